@@ -6,8 +6,9 @@
 //
 //     float quantity_at(int which, vec3 at): of the air, which word of these, at a place in cells
 //     float scale_of(int which, float value): what `strength` is times then
+//     vec3 way_at(vec3 at): along which the air goes there, of any length
 //@ option kind = pressure {pressure, velocity} : which of the picture's channels act: pressure lets gas out where the picture is raised and takes it in where it is lowered; velocity is a force
-//@ option align = none {none, fixed, radial, contour, direction} : which way the picture's upper edge looks: any way, up (its right along x), away from `center`, out of the region, along `direction`
+//@ option align = none {none, fixed, radial, contour, direction, flow} : which way the picture's upper edge looks: any way, up (its right along x), away from `center`, out of the region, along `direction`, the way that the air goes
 //@ option depth = revolve {revolve, extrude} : how a picture is deep: turned about the line upwards through its middle (a source is a ball, a pair of vortices a ring), or continued on both sides, where it fades as a Gaussian (a vortex is a tube)
 //@ field float region = 1 : where templates are put, as share of the places in the box that are tried (m)
 //@ field vec3 direction = {0, 0, 1} : of `align = "direction"`; where it is 0 they look any way
@@ -31,6 +32,7 @@ uniform vec3 box_max;
 
 float quantity_at(int which, vec3 at);
 float scale_of(int which, float value);
+vec3 way_at(vec3 at);
 
 const int TRIES = 32; // places a step
 const int RINGS = 10; // spheres that a contour is looked for with
@@ -127,8 +129,10 @@ void turn_at(vec3 at, float half_side, out vec3 right, out vec3 up) {
     up = place_of(at) - center;
 #elif ALIGN == ALIGN_CONTOUR
     up = way_out(at, half_side);
-#else
+#elif ALIGN == ALIGN_DIRECTION
     up = field_direction(place_of(at));
+#else
+    up = way_at(at);
 #endif
     float square = dot(up, up);
     up = square > 1e-20 && square < 1e20 ? up * inversesqrt(square) : any;
