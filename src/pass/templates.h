@@ -51,7 +51,7 @@ bool template_set_has(const template_set *t, int kind, size_t word);
 
 // ---- on the device ----------------------------------------------------------------------------
 
-// Tiles along an axis of so many cells: 1 to 32.
+// The side of a tile: `least` cells, or as many times that as leave at most 32 along an axis.
 uint32_t template_tile_side(uint32_t cells, uint32_t least);
 uint64_t template_mask_bytes(const template_set *t, uint64_t tiles);
 // Of `rows` of all of them, `sets` times.

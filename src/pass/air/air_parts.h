@@ -216,9 +216,9 @@ static inline air_source *air_source_of(const pass *source) {
     return source->state;
 }
 enum { AIR_EVALUATE, AIR_GIVE, AIR_MARK, AIR_SOURCE_KERNELS };
-// Whether a field of the pass samples the air, with a message: what it holds is known when a step
-// is done, and the pass runs before.
-bool air_is_read_by(const air *a, const pass *p);
+// Whether a field of the pass samples the air, with a message that ends with `instead`: what it
+// holds is known when a step is done, and the pass runs before.
+bool air_is_read_by(const air *a, const pass *p, const char *instead);
 bool air_source_declare(pass *p);
 bool air_source_defines(pass *p, size_t index, pass_defines *out);
 void air_source_list_memory(const pass *p, budget_list *out);

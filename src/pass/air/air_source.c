@@ -49,13 +49,13 @@ static bool carries(const air *a, const pass *particles) {
     return false;
 }
 
-bool air_is_read_by(const air *a, const pass *p) {
+bool air_is_read_by(const air *a, const pass *p, const char *instead) {
     for (size_t i = 0; i < p->face->field_count; i++) {
         const field *given = p->fields[i];
         if (given && (samples(a, given)))
             return err_set("%s: '%s' reads the air that it is given to; fields of other air, of "
-                           "files and of shapes are accepted",
-                           p->label, p->face->fields[i].name),
+                           "files and of shapes are accepted%s",
+                           p->label, p->face->fields[i].name, instead),
                    true;
     }
     return false;
@@ -63,7 +63,7 @@ bool air_is_read_by(const air *a, const pass *p) {
 
 bool pass_air_add_source(pass *p, pass *source) {
     air *a = air_of(p);
-    if (!check_gives(a, source) || air_is_read_by(a, source)) return false;
+    if (!check_gives(a, source) || air_is_read_by(a, source, "")) return false;
     air_source *s = source->state = arena_alloc(p->host->memory, sizeof *s);
     *s = (air_source){.air = a, .turn = UINT64_MAX, .coupled = carries(a, source->particles)};
     voxels_rule rule = (voxels_rule)pass_option(source, N_rule);

@@ -50,8 +50,9 @@ static bool check_direction(const pass *group) {
 
 bool pass_air_add_templates(pass *p, pass *group, const picture *image, uint32_t count) {
     air *a = air_of(p);
-    if (!check_direction(group) || air_is_read_by(a, group) || !use_named(p, group, "scale_by") ||
-        !use_named(p, group, "within"))
+    if (!check_direction(group) ||
+        air_is_read_by(a, group, "; 'within' and align = \"flow\" go by it") ||
+        !use_named(p, group, "scale_by") || !use_named(p, group, "within"))
         return false;
     group->runs_in = p;
     return template_set_add(&a->templates.set, a, group, image, count, "");
