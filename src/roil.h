@@ -375,8 +375,9 @@ char *roil_palette_text(const roil_palette *palette);
 char *roil_curve_text(const roil_curve *curve);
 
 typedef struct roil_camera {
-    float eye[3], target[3]; // metres
-    float fov;               // vertical, degrees
+    float eye[3], target[3];    // metres
+    float fov;                  // vertical, degrees
+    float distance, yaw, pitch; // of the eye from the target, as of orbit { } (m, degrees)
 } roil_camera;
 // Returns the camera of the last frame. Its controls are "camera.eye", "camera.target" and
 // "camera.fov".
@@ -423,6 +424,28 @@ void roil_free_preset(roil_preset *preset); // NULL is allowed
 bool roil_write_preset(roil_effect *e, const char *name);
 // Lists the names of an effect's presets, sorted. Any thread.
 size_t roil_presets(const char *effect_file, char (*names)[64], size_t capacity);
+
+// ---- writing back: what was set becomes what the script's files say ------------------------------
+// A value is put where the script writes it out, or, where it leaves it open, at the end of the
+// table. Comments and everything else in the files stay. What a script computes is not replaced.
+
+typedef struct roil_edit { // strings live as long as the edits
+    const char *controls;  // "march.steps, march.jitter"
+    const char *file;      // path; NULL: it cannot be written
+    int line;              // from 1: the first of the lines that change
+    const char *before, *after; // these lines
+    const char *refusal;        // why it cannot be written; NULL: it can
+} roil_edit;
+typedef struct roil_edits roil_edits;
+// Finds what to write for a control, or, for NULL, for every control that was changed. Reads the
+// files. Free it with roil_edits_free. NULL with a message: there is no such control.
+roil_edits *roil_edits_create(roil_effect *e, const char *control);
+size_t roil_edits_list(const roil_edits *x, roil_edit *out, size_t capacity);
+// Write the files, and write them as they were before. False with a message: a file is not what it
+// is supposed to be, and none was written; or one cannot be written.
+bool roil_edits_write(const roil_edits *x);
+bool roil_edits_undo(const roil_edits *x);
+void roil_edits_free(roil_edits *x); // NULL is allowed
 
 // ---- live: an effect that is rebuilt when its files change -------------------------------------
 

@@ -20,15 +20,11 @@ static axes axes_of(const orbit *o) {
 }
 
 void orbit_from(orbit *o, const roil_camera *camera) {
-    vec3 back;
-    glm_vec3_sub((float *)camera->eye, (float *)camera->target, back);
-    float distance = glm_vec3_norm(back);
-    *o = (orbit){.distance = clampf(distance, MIN_DISTANCE, MAX_DISTANCE), .fov = camera->fov};
+    float distance;
+    *o = (orbit){.fov = camera->fov};
+    orbit_angles(camera->eye, camera->target, &distance, &o->yaw, &o->pitch);
+    o->distance = clampf(distance, MIN_DISTANCE, MAX_DISTANCE);
     glm_vec3_copy((float *)camera->target, o->target);
-    if (!(distance >= MIN_DISTANCE)) return; // looks nowhere: along +Y, as the renderer has it
-    o->pitch = glm_deg(asinf(clampf(back[2] / distance, -1, 1)));
-    if (hypotf(back[0], back[1]) > 1e-4f * distance)
-        o->yaw = glm_deg(atan2f(back[1], back[0])) + 90;
 }
 
 void orbit_to(const orbit *o, roil_camera *out) {

@@ -38,6 +38,19 @@ box3 box3_grow(box3 a, float margin) {
                   {a.max.x + margin, a.max.y + margin, a.max.z + margin}};
 }
 
+void orbit_angles(const float eye[3], const float target[3], float *distance, float *yaw,
+                  float *pitch) {
+    static const float NEAR = 1e-3f, UPRIGHT = 1e-4f; // metres; of the distance
+    vec3 back;
+    glm_vec3_sub((float *)eye, (float *)target, back);
+    *distance = glm_vec3_norm(back);
+    *yaw = *pitch = 0;
+    if (!(*distance >= NEAR)) return;
+    *pitch = glm_deg(asinf(clampf(back[2] / *distance, -1, 1)));
+    if (hypotf(back[0], back[1]) > UPRIGHT * *distance)
+        *yaw = glm_deg(atan2f(back[1], back[0])) + 90;
+}
+
 uint16_t half_from_float(float value) {
     uint32_t bits;
     memcpy(&bits, &value, sizeof bits);

@@ -20,6 +20,11 @@ box3 box3_grow(box3 a, float margin);
 bool box3_is_empty(box3 a);
 bool box3_is_finite(box3 a); // false when any side is beyond 1e29
 
+// Where `eye` is as seen from `target`: the distance, and degrees around Z (0: along -Y) and above
+// the ground. Angles are 0 where both are one point.
+void orbit_angles(const float eye[3], const float target[3], float *distance, float *yaw,
+                  float *pitch);
+
 uint16_t half_from_float(float value); // round to nearest even, NaN kept, overflow to infinity
 float half_to_float(uint16_t value);
 

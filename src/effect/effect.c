@@ -108,6 +108,7 @@ void effect_destroy(effect *e) {
     mem_free(e->materials);
     mem_free(e->instances);
     mem_free(e->files);
+    mem_free(e->places);
     arena_free(&e->memory);
     mem_free(e);
 }

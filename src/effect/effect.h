@@ -153,6 +153,15 @@ typedef struct effect_hooks {                                          // calls 
 } effect_hooks;
 void effect_set_hooks(effect *e, const effect_hooks *hooks);
 void effect_add_file(effect *e, const char *path); // a file a reload should watch
+
+typedef struct effect_place { // where a script makes something
+    const char *file;         // path
+    int line;                 // from 1
+    const char *call;         // the function that it calls: "march", "param"
+} effect_place;
+// Notes the place of a pass, a parameter, a palette, a curve, or a field that the script gave to
+// the scene, a light or a material. `call` must live as long as the effect.
+void effect_note_place(effect *e, const void *made, const char *file, int line, const char *call);
 enum {
     EFFECT_MAX_RAMPS = 256,    // palettes and curves that get a name; later ones get none
     EFFECT_CONTROL_COST = 512, // approximate bytes of a control
@@ -208,6 +217,8 @@ typedef struct effect_control {
 size_t effect_control_count(const effect *e);
 const effect_control *effect_get_control(const effect *e, size_t index);
 const effect_control *effect_find_control(effect *e, const char *name); // NULL: suggests
+// Where the script makes what the control belongs to. NULL: that is not known.
+const effect_place *effect_control_place(const effect *e, const effect_control *c);
 // The palette or curve of a control of that kind.
 const palette *effect_control_palette(const effect_control *c);
 const curve *effect_control_curve(const effect_control *c);

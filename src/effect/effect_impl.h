@@ -163,6 +163,8 @@ struct effect {
     bool *applied; // one per setting
     size_t setting_count;
 
+    struct noted_place *places; // place.c
+    size_t place_count, place_capacity;
     control **controls; // in the order of their list
     size_t control_count, control_capacity;
     size_t controlled; // passes that have theirs

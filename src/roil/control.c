@@ -229,6 +229,7 @@ bool roil_get_camera(roil_effect *e, roil_camera *out) {
     memcpy(out->eye, eye, sizeof out->eye);
     memcpy(out->target, target, sizeof out->target);
     out->fov = clampf(fov[0], 1, 170);
+    orbit_angles(eye, target, &out->distance, &out->yaw, &out->pitch);
     return true;
 }
 

@@ -25,6 +25,9 @@ typedef struct script {
 
 script *script_of(lua_State *L);
 arena *script_memory(lua_State *L);
+// Notes that the script makes `made` now, by calling `call` ("march"), so that its values can be
+// written back (effect_note_place).
+void script_note_place(lua_State *L, const void *made, const char *call);
 // Raises unless the file is being loaded; `what` is the constructor's name.
 void script_require_loading(lua_State *L, const char *what);
 // Raises the current error message.

@@ -52,6 +52,7 @@ static int l_curve(lua_State *L) {
     curve *c = curve_create(script_memory(L), &desc);
     const char *name = c ? value_name_or_variable(L, 1, who) : NULL;
     if (!name || !effect_add_curve(script_of(L)->effect, c, name)) script_raise(L);
+    script_note_place(L, c, who);
     field_push(L, field_curve(script_memory(L), c));
     return 1;
 }

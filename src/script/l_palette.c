@@ -124,6 +124,7 @@ static int l_palette(lua_State *L) {
     palette *p = palette_create(script_memory(L), &desc);
     const char *name = p ? value_name_or_variable(L, 1, who) : NULL;
     if (!name || !effect_add_palette(script_of(L)->effect, p, name)) script_raise(L);
+    script_note_place(L, p, who);
     push_palette(L, p);
     return 1;
 }
@@ -170,6 +171,7 @@ static int l_over_age(lua_State *L) {
         name = effect_add_palette(e, p, name);
     }
     if (!name) script_raise(L);
+    script_note_place(L, p, name_of);
     push_palette(L, p);
     return 1;
 }

@@ -96,6 +96,7 @@ static int l_param(lua_State *L) {
         vm_error(L, "param '%s': log = true needs min above 0", desc->name);
     int index = effect_add_param(script_of(L)->effect, &param);
     if (index < 0) script_raise(L);
+    script_note_place(L, effect_get_param(script_of(L)->effect, (size_t)index), who);
     field_push_param(L, field_param(memory, desc->components, index), index);
     return 1;
 }

@@ -348,6 +348,7 @@ static void begin_pass(lua_State *L, pass_call *call, const char *type, const ch
     s->unsound = call->who;
     call->pass = effect_add_pass(s->effect, type, file, label);
     if (!call->pass) script_raise(L);
+    script_note_place(L, call->pass, file ? "shader" : call->who);
     call->face = pass_interface(call->pass);
     vm_charge_memory(L, (call->face->uniform_count + call->face->option_count + 1) *
                             EFFECT_CONTROL_COST);

@@ -20,6 +20,7 @@ void value_read_slots(lua_State *L, const char *who, void *out) {
             script_raise(L);
         }
         *scene_slot(out, v) = node;
+        script_note_place(L, node, who);
     }
 }
 

@@ -21,6 +21,12 @@ arena *script_memory(lua_State *L) {
     return effect_memory(script_of(L)->effect);
 }
 
+void script_note_place(lua_State *L, const void *made, const char *call) {
+    int line;
+    const char *file = vm_caller_file(L, &line);
+    if (file) effect_note_place(script_of(L)->effect, made, file, line, call);
+}
+
 void script_require_loading(lua_State *L, const char *what) {
     if (!script_of(L)->loading)
         vm_error(L,

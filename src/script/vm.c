@@ -413,30 +413,46 @@ static void chunk_name(const char *shown, char owner, char out[LUA_IDSIZE]) {
     snprintf(out, LUA_IDSIZE, "%c%s", owner, text);
 }
 
-static const char sources[] = "roil.sources"; // of the registry: texts by chunk name
+// Of the registry: texts, and paths of files, by chunk name.
+static const char sources[] = "roil.sources", paths[] = "roil.paths";
 
 typedef struct source {
-    const char *name, *text;
+    const char *name, *path, *text;
     size_t length;
 } source;
 
 static int keep_source(lua_State *L) {
     const source *s = lua_touserdata(L, 1);
     luaL_getsubtable(L, LUA_REGISTRYINDEX, sources);
+    luaL_getsubtable(L, LUA_REGISTRYINDEX, paths);
     vm_of(L)->ours = true;
+    lua_pushstring(L, s->path);
+    lua_setfield(L, -2, s->name);
     lua_pushlstring(L, s->text, s->length);
     vm_of(L)->ours = false;
-    lua_setfield(L, -2, s->name);
+    lua_setfield(L, -3, s->name);
     return 0;
+}
+
+// Returns what a table of the registry has for a chunk; it keeps the text.
+static const char *kept_text(lua_State *L, const char *table, const char *chunk) {
+    luaL_getsubtable(L, LUA_REGISTRYINDEX, table);
+    const char *text = lua_getfield(L, -1, chunk) == LUA_TSTRING ? lua_tostring(L, -1) : NULL;
+    lua_pop(L, 2);
+    return text;
+}
+
+const char *vm_caller_file(lua_State *L, int *line) {
+    lua_Debug ar;
+    if (!find_line(L, &ar) || ar.source[0] != OF_EFFECT) return NULL;
+    *line = ar.currentline;
+    return kept_text(L, paths, ar.source);
 }
 
 const char *vm_caller_source(lua_State *L, size_t *line) {
     lua_Debug ar;
     if (!find_line(L, &ar)) return NULL;
-    luaL_getsubtable(L, LUA_REGISTRYINDEX, sources);
-    const char *text = lua_getfield(L, -1, ar.source) == LUA_TSTRING ? lua_tostring(L, -1) : NULL;
-    lua_pop(L, 2); // the table keeps the text
-    const char *at = text;
+    const char *text = kept_text(L, sources, ar.source), *at = text;
     for (int i = 1; at && i < ar.currentline; i++) {
         at = strchr(at, '\n');
         if (at) at++;
@@ -465,7 +481,7 @@ void vm_load_chunk(lua_State *L, const char *root, const char *path, const char 
     char name[LUA_IDSIZE];
     chunk_name(shown, ours ? OF_ROIL : OF_EFFECT, name);
     lua_pushcfunction(L, keep_source);
-    lua_pushlightuserdata(L, &(source){name, text, length});
+    lua_pushlightuserdata(L, &(source){name, path, text, length});
     int status = lua_pcall(L, 1, 0, 0);
     if (status == LUA_OK) status = luaL_loadbufferx(L, text, length, name, "t");
     mem_free(data);

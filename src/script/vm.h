@@ -59,6 +59,9 @@ uint64_t vm_random(lua_State *L);
 // Returns the text of the file whose line called, and where that line begins in it. NULL when it is
 // unknown. Valid as long as the state.
 const char *vm_caller_source(lua_State *L, size_t *line);
+// Returns the path of the effect's file whose line called, and that line, from 1. NULL when none of
+// the effect's files did. Valid as long as the state.
+const char *vm_caller_file(lua_State *L, int *line);
 
 // Loads a text chunk and pushes it as a function. `root`: as in file_open_inside. `ours`: as
 // `prelude` of vm_run_file.

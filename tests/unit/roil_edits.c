@@ -1,0 +1,246 @@
+// Values written back into the script: the file afterwards, byte by byte, and what it loads as.
+#include "roil_helper.h"
+
+static const char script_text[] =
+    "-- march { steps = 7 } is a comment\n"
+    "local fx = effect { }\n"
+    "local density = param { 'density', 20, min = 0, max = 200 } -- thick\n"
+    "local on, last = param { 'on', true }, param { 'last', 1 }\n"
+    "local look = param { 'look', \"soft\", words = { 'soft', 'hard' } }\n"
+    "local wind = param { 'wind', {1, 0, 0.5}, help = [[a } in a text]] }\n"
+    "local tint = param { 'tint', '#ff8000' }\n"
+    "local fire <const> = palette { {0, '#000000'}, {1, '#ffffff'}, space = 'oklab' }\n"
+    "local fade = curve {\n"
+    "  {0, 1}, -- at first\n"
+    "  {2, 0.25},\n"
+    "}\n"
+    "fx.camera = orbit { target = {0, 0, 1}, distance = 8, yaw = 30, pitch = 10 }\n"
+    "fx.sun = sun { strength = 2 }\n"
+    "local ball = sphere { }\n"
+    "fx.output = march {\n"
+    "  density = ball * density, -- as above\n"
+    "  steps = 128,\n"
+    "  mode = 'physical',\n"
+    "  albedo = {1, 1, 1} }\n";
+
+static roil_edits *edits_of(roil_effect *e, const char *control) {
+    roil_edits *x = roil_edits_create(e, control);
+    need(x);
+    return x;
+}
+
+static void file_is(const char *expected) {
+    char path[PATH_CAP];
+    void *data;
+    size_t size;
+    helper_path(path, "e.lua");
+    assert_true(file_read(path, 1 << 20, &data, &size));
+    assert_string_equal(data, expected);
+    mem_free(data);
+}
+
+static void all_kinds_are_written(void **state) {
+    (void)state;
+    static const roil_setting moved[] = {
+        {"density", "30.5"},
+        {"on", "false"},
+        {"last", "2"},
+        {"look", "hard"},
+        {"wind", "0.1,0,-3"},
+        {"tint", "#123456"},
+        {"fire", "0 #ff0000; 0.5 4,2,0.5 0.25; 3 #ffffff"},
+        {"fade", "cubic 0 0.3; 1 7"},
+        {"camera.distance", "9"},
+        {"sun.strength", "4"},
+        {"sun.azimuth", "200"}, // which the script leaves open
+        {"march.steps", "64"},
+        {"march.mode", "paper"},
+        {"march.jitter", "0.25"}, // the same
+    };
+    roil_effect *e = roil_open(script_text, moved, COUNT_OF(moved));
+    roil_edits *x = edits_of(e, NULL);
+    need(roil_edits_write(x));
+    file_is("-- march { steps = 7 } is a comment\n"
+            "local fx = effect { }\n"
+            "local density = param { 'density', 30.5, min = 0, max = 200 } -- thick\n"
+            "local on, last = param { 'on', false }, param { 'last', 2 }\n"
+            "local look = param { 'look', \"hard\", words = { 'soft', 'hard' } }\n"
+            "local wind = param { 'wind', {0.1, 0, -3}, help = [[a } in a text]] }\n"
+            "local tint = param { 'tint', \"#123456\" }\n"
+            "local fire <const> = palette { {0, \"#ff0000\"}, {0.5, {4, 2, 0.5}, 0.25}, {3, "
+            "\"#ffffff\"}, space = \"oklab\" }\n"
+            "local fade = curve {\n"
+            "  {0, 0.3},\n"
+            "  {1, 7},\n"
+            "  shape = \"cubic\",\n"
+            "}\n"
+            "fx.camera = orbit { target = {0, 0, 1}, distance = 9, yaw = 30, pitch = 10 }\n"
+            "fx.sun = sun { strength = 4, azimuth = 200 }\n"
+            "local ball = sphere { }\n"
+            "fx.output = march {\n"
+            "  density = ball * density, -- as above\n"
+            "  steps = 64,\n"
+            "  mode = \"paper\",\n"
+            "  albedo = {1, 1, 1}, jitter = 0.25 }\n");
+    char path[PATH_CAP];
+    helper_path(path, "e.lua");
+    roil_effect *again = roil_load(helper_roil, path, NULL, 0);
+    need(again);
+    for (size_t i = 0; i < COUNT_OF(moved); i++) {
+        char *text = roil_control_text(again, moved[i].name);
+        assert_string_equal(text, moved[i].value);
+        roil_free(text);
+    }
+    roil_unload(again);
+    need(roil_edits_undo(x));
+    file_is(script_text);
+    roil_edits_free(x);
+    roil_unload(e);
+}
+
+static void what_will_change_is_listed(void **state) {
+    (void)state;
+    static const roil_setting moved[] = {
+        {"on", "false"}, {"last", "2"}, {"fade", "linear 0 3; 1 7"}};
+    roil_effect *e = roil_open(script_text, moved, COUNT_OF(moved));
+    roil_edit list[4];
+    roil_edits *x = edits_of(e, NULL);
+    assert_int_equal(roil_edits_list(x, list, 4), 2);
+    assert_string_equal(list[0].controls, "on, last");
+    assert_int_equal(list[0].line, 4);
+    assert_string_equal(list[0].before,
+                        "local on, last = param { 'on', true }, param { 'last', 1 }");
+    assert_string_equal(list[0].after,
+                        "local on, last = param { 'on', false }, param { 'last', 2 }");
+    assert_string_equal(list[1].controls, "fade");
+    assert_int_equal(list[1].line, 9);
+    assert_string_equal(list[1].after,
+                        "local fade = curve {\n  {0, 3},\n  {1, 7},\n  shape = \"linear\",\n}");
+    roil_edits_free(x);
+    x = edits_of(e, "last"); // one alone
+    need(roil_edits_write(x));
+    assert_int_equal(roil_edits_list(x, list, 4), 1);
+    assert_string_equal(list[0].after,
+                        "local on, last = param { 'on', true }, param { 'last', 2 }");
+    roil_edits_free(x);
+    refused(roil_edits_create(e, "lost"), "did you mean 'last'?");
+    roil_unload(e);
+}
+
+static void a_turned_camera_is_an_orbit_again(void **state) {
+    (void)state;
+    roil_effect *e = roil_open(script_text, NULL, 0);
+    need(roil_set(e, "camera.eye", "5,0,1"));
+    need(roil_set(e, "camera.target", "0,0,1"));
+    roil_edits *x = edits_of(e, NULL);
+    need(roil_edits_write(x));
+    roil_edits_free(x);
+    roil_unload(e);
+    char path[PATH_CAP], line[] = "orbit { target = {0, 0, 1}, distance = 5, yaw = 90, pitch = 0 }";
+    void *data;
+    size_t size;
+    helper_path(path, "e.lua");
+    assert_true(file_read(path, 1 << 20, &data, &size));
+    if (!strstr(data, line)) fail_msg("%s", (char *)data);
+    mem_free(data);
+    e = roil_load(helper_roil, path, NULL, 0);
+    need(e);
+    roil_camera camera;
+    need(roil_get_camera(e, &camera));
+    assert_float_equal(camera.eye[0], 5, 1e-4);
+    assert_float_equal(camera.eye[1], 0, 1e-4);
+    roil_unload(e);
+}
+
+// Returns why the setting cannot be written into the script.
+static void refuses(const char *text, const char *name, const char *value, const char *reason) {
+    roil_effect *e = roil_open(text, &(roil_setting){name, value}, 1);
+    roil_edit edit;
+    roil_edits *x = edits_of(e, NULL);
+    assert_int_equal(roil_edits_list(x, &edit, 1), 1);
+    if (!edit.refusal || !strstr(edit.refusal, reason))
+        fail_msg("%s: \"%s\" is not in: %s", name, reason,
+                 edit.refusal ? edit.refusal : edit.after);
+    need(roil_edits_write(x));
+    file_is(text);
+    roil_edits_free(x);
+    roil_unload(e);
+}
+
+#define HEAD "local fx = effect { }\n"
+#define TAIL "fx.output = march { density = sphere { } }\n"
+
+static void what_is_computed_stays(void **state) {
+    (void)state;
+    refuses(HEAD "local n = 8\nfx.output = march { density = sphere { }, steps = n * 4 }\n",
+            "march.steps", "64", "e.lua:3: it is computed there: n * 4");
+    refuses(HEAD "local function d(v) return param { 'd', v } end\nlocal x = d(3)\n" TAIL, "d", "4",
+            "it is computed there: v");
+    refuses(HEAD "for i = 1, 2 do local x = param { 'd' .. i, 2 } end\n" TAIL, "d1", "4",
+            "line 2 makes several by one 'param'");
+    refuses(HEAD "local p = palette { {0, '#000'}, {1, string.format('#%s', 'fff')} }\n" TAIL, "p",
+            "0 #ff0000; 1 #fff", "it is computed there: { {0, '#000'}");
+    refuses(HEAD "local t = { 'd', 3 }\nlocal x = param(t)\n" TAIL, "d", "4",
+            "line 3 has no call of 'param' with a table of values");
+    refuses(HEAD "fx.camera = orbit { distance = math.sqrt(16) }\n" TAIL, "camera.eye", "1,2,3",
+            "'distance': it is computed there: math.sqrt(16)");
+}
+
+static void a_file_that_changed_is_left_alone(void **state) {
+    (void)state;
+    roil_effect *e = roil_open(script_text, &(roil_setting){"density", "3"}, 1);
+    roil_edits *x = edits_of(e, NULL);
+    helper_put("e.lua", "-- mine\n");
+    refused(roil_edits_write(x), "has changed meanwhile");
+    file_is("-- mine\n");
+    refused(roil_edits_undo(x), "has changed meanwhile");
+    roil_edits_free(x);
+    roil_unload(e);
+    helper_put("e.lua", script_text);
+    e = roil_open(script_text, &(roil_setting){"density", "3"}, 1);
+    helper_put("e.lua", "\n"); // lines are other ones
+    x = edits_of(e, NULL);
+    roil_edit edit;
+    assert_int_equal(roil_edits_list(x, &edit, 1), 1);
+    assert_non_null(edit.refusal);
+    roil_edits_free(x);
+    roil_unload(e);
+    e = roil_open(HEAD "local x = param { 'x', 1 }\n" TAIL, &(roil_setting){"x", "3"}, 1);
+    helper_put("e.lua", HEAD "local x = param { 'x', 2 }\n" TAIL);
+    x = edits_of(e, NULL);
+    assert_int_equal(roil_edits_list(x, &edit, 1), 1);
+    assert_non_null(strstr(edit.refusal, "2, is not what the effect began with"));
+    roil_edits_free(x);
+    roil_unload(e);
+}
+
+static void modules_of_the_effect_are_written(void **state) {
+    (void)state;
+    helper_put("look.lua", "return { thick = param { 'thick', 3 } }\n");
+    roil_effect *e = roil_open("local look = require 'look'\n" HEAD
+                               "fx.output = march { density = sphere { } * look.thick }\n",
+                               &(roil_setting){"thick", "4"}, 1);
+    roil_edits *x = edits_of(e, NULL);
+    need(roil_edits_write(x));
+    roil_edits_free(x);
+    roil_unload(e);
+    char path[PATH_CAP];
+    void *data;
+    size_t size;
+    helper_path(path, "look.lua");
+    assert_true(file_read(path, 1 << 20, &data, &size));
+    assert_string_equal(data, "return { thick = param { 'thick', 4 } }\n");
+    mem_free(data);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(all_kinds_are_written),
+        cmocka_unit_test(what_will_change_is_listed),
+        cmocka_unit_test(a_turned_camera_is_an_orbit_again),
+        cmocka_unit_test(what_is_computed_stays),
+        cmocka_unit_test(a_file_that_changed_is_left_alone),
+        cmocka_unit_test(modules_of_the_effect_are_written),
+    };
+    return cmocka_run_group_tests(tests, roil_setup, roil_teardown);
+}
