@@ -425,14 +425,15 @@ bool roil_write_preset(roil_effect *e, const char *name);
 // Lists the names of an effect's presets, sorted. Any thread.
 size_t roil_presets(const char *effect_file, char (*names)[64], size_t capacity);
 
-// ---- writing back: what was set becomes what the script's files say ------------------------------
-// A value is put where the script writes it out, or, where it leaves it open, at the end of the
-// table. Comments and everything else in the files stay. What a script computes is not replaced.
+// ---- writing back: what was set becomes what the script's files say
+// ------------------------------ A value is put where the script writes it out, or, where it leaves
+// it open, at the end of the table. Comments and everything else in the files stay. What a script
+// computes is not replaced.
 
-typedef struct roil_edit { // strings live as long as the edits
-    const char *controls;  // "march.steps, march.jitter"
-    const char *file;      // path; NULL: it cannot be written
-    int line;              // from 1: the first of the lines that change
+typedef struct roil_edit {      // strings live as long as the edits
+    const char *controls;       // "march.steps, march.jitter"
+    const char *file;           // path; NULL: it cannot be written
+    int line;                   // from 1: the first of the lines that change
     const char *before, *after; // these lines
     const char *refusal;        // why it cannot be written; NULL: it can
 } roil_edit;
@@ -486,6 +487,9 @@ const char *roil_live_message(roil_live *l);
 // it changes. A structural control causes a build.
 bool roil_live_set(roil_live *l, const char *name, const char *value);
 bool roil_live_reset(roil_live *l, const char *name); // NULL: all controls
+// Returns what a control is set to, as roil_live_set takes it; NULL: it has the script's own value.
+// Free it with roil_free.
+char *roil_live_setting(roil_live *l, const char *name);
 typedef struct roil_live_count {
     uint64_t reloads, failures; // builds that were swapped in, and that failed
     double last; // seconds from the change of the file until its build was swapped in

@@ -131,6 +131,8 @@ static int run_window(live *l, window *w, const job *j) {
         _exit(APP_DONE);
     }
     int status = done ? APP_DONE : app_fail_input();
+    write_back_close(l);
+    undo_free(&l->undo);
     panel_destroy(l->panel);
     flow_tools_destroy(l->flow_tools, l->r);
     inspector_destroy(l->inspector, l->r);

@@ -89,6 +89,10 @@ static void key_quit(live *l) {
 static void close_top(live *l) {
     if (l->help)
         l->help = false;
+    else if (l->writing)
+        write_back_close(l);
+    else if (l->undo_list)
+        l->undo_list = false;
     else if (l->session.slices)
         l->session.slices = false;
     else if (l->session.inspector)
@@ -117,6 +121,14 @@ static void save_preset(live *l) {
     live_notice(l, "Saved preset \"%s\"", name);
 }
 
+static void write_back_key(live *l) {
+    write_back_ask(l, NULL);
+}
+
+static void undo_list(live *l) {
+    l->undo_list = !l->undo_list;
+}
+
 // ---- table ------------------------------------------------------------------------------------
 
 static const live_key keys[] = {
@@ -135,6 +147,11 @@ static const live_key keys[] = {
     {GLFW_KEY_S, 0, "S", "see, push and capture the flow of slices", slices},
     {GLFW_KEY_P, 0, "P", "performance", performance_key},
     {GLFW_KEY_F12, 0, "F12", "save the picture as PNG", shot},
+    {GLFW_KEY_Z, GLFW_MOD_CONTROL, "Ctrl+Z", "undo", live_undo},
+    {GLFW_KEY_Y, GLFW_MOD_CONTROL, "Ctrl+Y", "do again", live_redo},
+    {GLFW_KEY_Z, GLFW_MOD_CONTROL | GLFW_MOD_SHIFT, "Ctrl+Shift+Z", "do again", live_redo},
+    {GLFW_KEY_U, 0, "U", "list what was done", undo_list},
+    {GLFW_KEY_W, 0, "W", "write what was changed into the file", write_back_key},
     {GLFW_KEY_S, GLFW_MOD_CONTROL, "Ctrl+S", "save a preset", save_preset},
     {GLFW_KEY_F1, 0, "F1", "this help", help},
     {GLFW_KEY_ESCAPE, 0, "Esc", "close what lies on top", close_top},
@@ -153,7 +170,9 @@ void live_press(live *l, int key, int mods, bool repeated) {
     if ((mods & used) == GLFW_MOD_ALT && event_hears_key(l, key)) mods = 0;
     for (size_t i = 0; i < COUNT_OF(keys); i++) {
         if (keys[i].key != key || keys[i].mods != (mods & used)) continue;
-        if (!repeated || keys[i].run == step_back || keys[i].run == step_on) keys[i].run(l);
+        if (!repeated || keys[i].run == step_back || keys[i].run == step_on ||
+            keys[i].run == live_undo || keys[i].run == live_redo)
+            keys[i].run(l);
         return;
     }
 }

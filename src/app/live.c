@@ -46,27 +46,13 @@ void live_notice(live *l, const char *format, ...) {
     va_start(args, format);
     vsnprintf(l->notice, sizeof l->notice, format, args);
     va_end(args);
+    log_write(LOG_DEBUG, "live: notice: %s", l->notice);
     l->notice_until = clock_seconds() + NOTICE;
 }
 
-static void changed(live *l) {
+void live_redraw(live *l) {
     l->dirty = true;
-    if (!l->held) l->broken = NULL; // it may work now
-}
-
-void live_set(live *l, const char *name, const char *value) {
-    log_write(LOG_DEBUG, "live: set %s = %s", name, value);
-    if (!roil_live_set(l->follow, name, value)) live_notice(l, "%s", roil_error());
-    changed(l);
-    restart_arm(l);
-}
-
-void live_reset(live *l, const char *name) {
-    log_write(LOG_DEBUG, "live: reset %s", name ? name : "everything");
-    if (!roil_live_reset(l->follow, name)) live_notice(l, "%s", roil_error());
-    if (!name) l->camera_moved = false;
-    changed(l);
-    restart_arm(l);
+    if (!l->held) l->broken = NULL;
 }
 
 void live_break(live *l, const char *why) {
@@ -94,8 +80,9 @@ static void take_over(live *l, loop *p) {
     }
     l->camera_moved = false;     // the hand takes it up anew
     if (!first) l->held = false; // a file has changed
-    changed(l);
+    live_redraw(l);
     p->drawn = p->drawn && !first;
+    changes_take_over(l);
     log_write(LOG_DEBUG, "live: took over, %.0f ms after the change",
               roil_live_counts(l->follow).last * 1000);
 }
@@ -135,7 +122,7 @@ static void loop_resize(live *l, loop *p, double now) {
     if (!l->effect) return; // it will be prepared for that size
     p->drawn = false;
     if (roil_prepare(l->effect, width, height))
-        changed(l);
+        live_redraw(l);
     else
         live_break(l, roil_error());
 }
@@ -182,7 +169,7 @@ static bool can_draw(const live *l) {
 static void loop_advance(live *l, loop *p, double seconds) {
     if (l->held && l->time.playing) {
         l->held = false;
-        changed(l);
+        live_redraw(l);
         restart_arm(l);
     }
     // Time that a simulation cannot keep up with passes more slowly.
@@ -263,6 +250,8 @@ static void draw_interface(live *l, const layout *at, uint32_t width) {
         inspector_draw(l);
         flow_tools_draw(l);
         performance_draw(l);
+        changes_draw(l);
+        write_back_draw(l);
     }
     overlay_draw(l, l->view);
     help_draw(l);
@@ -313,7 +302,7 @@ static double time_to_sleep(const live *l, const loop *p, double now) {
     }
     if (!l->held && (p->wanted[0] != l->width || p->wanted[1] != l->height))
         most = fmin(most, TICK);
-    if (now < p->awake_until || now < l->notice_until) most = fmin(most, TICK);
+    if (now < p->awake_until || l->notice[0]) most = fmin(most, TICK);
     if (ui_wants_keys()) most = fmin(most, BLINK);
     return fmax(most, 0);
 }
@@ -353,6 +342,7 @@ bool live_loop(live *l, window *w) {
         if (p.drawn) flow_tools_update(l);
         if (l->shot) take_shot(l, &p);
         ui_begin();
+        undo_frame(&l->undo, ui_held());
         draw_interface(l, &at, width);
         ui_end(&p.picture);
         if (roil_is_lost(l->r) || !loop_show(l, &p, width, height)) {

@@ -4,6 +4,7 @@
 #include "app/app.h"
 #include "app/orbit.h"
 #include "app/timeline.h"
+#include "app/undo.h"
 #include "ui/ui.h"
 
 // Sizes of the picture, relative to its view.
@@ -27,6 +28,7 @@ typedef struct performance performance; // performance.c
 typedef struct inspector inspector;     // inspector.c
 typedef struct flow_tools flow_tools;   // flow_tools.c
 typedef struct panel panel;             // panel.c
+typedef struct write_back write_back;   // write_back.c
 
 typedef struct live {
     roil *r;
@@ -51,6 +53,10 @@ typedef struct live {
     inspector *inspector;
     flow_tools *flow_tools;
     panel *panel;
+    undo undo;
+    bool undo_list;         // is shown
+    size_t restored;        // step, from 1, whose values are set once its file is loaded; 0: none
+    write_back *writing;    // what the user is asked to write; NULL: nothing
     uint32_t width, height; // of the effect's picture, pixels
     ui_rect view;           // where the picture is shown
     float pointer[2];       // position in the picture, 0 to 1 from its top left
@@ -59,14 +65,28 @@ typedef struct live {
     float slipped; // how far the pointer moved since the button went down (pixels)
 } live;
 
-// Sets a control for the user and has the frame drawn again. A failure is shown as a notice.
-void live_set(live *l, const char *name, const char *value);
-void live_reset(live *l, const char *name); // NULL: all controls
+void live_redraw(live *l); // draws the frame again; what was broken may work now
 void live_notice(live *l, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void live_break(live *l, const char *why); // draws no frame until something changes
 // Runs the window until the user quits. False with a message when nothing can be shown any more.
 typedef struct window window; // window.h
 bool live_loop(live *l, window *w);
+
+// ---- changes.c: all that a hand changes, and undoing it -----------------------------------------
+
+// Sets a control for the user and has the frame drawn again. A failure is shown as a notice.
+void live_set(live *l, const char *name, const char *value);
+void live_reset(live *l, const char *name); // NULL: all controls
+void live_undo(live *l);
+void live_redo(live *l);
+void changes_take_over(live *l); // call it when the effect was loaded anew
+void changes_draw(live *l);      // the list of what was done
+
+// ---- write_back.c: what was changed is written into the effect's files --------------------------
+
+void write_back_ask(live *l, const char *control); // NULL: every control that was changed
+void write_back_draw(live *l);                     // shows what will change
+void write_back_close(live *l);
 
 // ---- camera_input.c: the user moves the camera --------------------------------------------------
 

@@ -107,6 +107,7 @@ static bool say_simulation(const live *l, char *out, size_t capacity) {
 }
 
 void overlay_draw(live *l, ui_rect view) {
+    if (clock_seconds() >= l->notice_until) l->notice[0] = '\0'; // and the loop may sleep
     if (!is_room(view)) return;
     const char *message = message_of(l), *warning = l->effect ? roil_warning(l->effect) : NULL;
     float bottom = floorf(view.bottom - MARGIN * ui_scale());
@@ -116,7 +117,7 @@ void overlay_draw(live *l, ui_rect view) {
     else if (warning)
         bottom = draw_card(&(card){"warning", UI_WARNING, warning, NULL}, view);
     char simulation[640];
-    if (l->notice[0] && clock_seconds() < l->notice_until)
+    if (l->notice[0])
         draw_notice(l->notice, view, bottom);
     else if (say_simulation(l, simulation, sizeof simulation))
         draw_notice(simulation, view, bottom);

@@ -6,7 +6,7 @@
 #include <string.h>
 
 enum { PANEL_READOUTS = 64 };
-static const float SEARCH = 48, PRESETS = 78; // heights of the parts that do not scroll, units
+static const float SEARCH = 48, PRESETS = 108; // heights of the parts that do not scroll, units
 
 panel *panel_create(void) {
     panel *p = mem_alloc(sizeof *p);

@@ -44,6 +44,7 @@ static void menu(live *l, const roil_control *c, const char *id) {
     if (!ui_menu_begin(id)) return;
     if (c->driven && ui_item("Override")) row_set_value(l, c, c->value);
     if (c->moved && ui_item("Reset")) panel_reset(l, c->name);
+    if (c->moved && ui_item("Write into the file")) write_back_ask(l, c->name);
     if (ui_item("Copy as Lua")) panel_copy_lua(l, c->name);
     if (ui_item("Copy name")) ui_copy(c->name);
     ui_menu_end();
@@ -242,5 +243,9 @@ void panel_shape_buttons(live *l, const char *name) {
     ui_disable_end();
     ui_same_line();
     if (ui_small_button("Copy as Lua")) panel_copy_lua(l, name);
+    ui_same_line();
+    ui_disable_begin(!c.moved);
+    if (ui_small_button("Write into the file")) write_back_ask(l, name);
+    ui_disable_end();
     ui_gap(10 * ui_scale());
 }

@@ -45,6 +45,7 @@ static void preset_apply(live *l, const roil_preset *preset, const char *name) {
         else
             strbuf_add(&unknown, "%s%s", unknown.length ? ", " : "", s->name);
     }
+    undo_label(&l->undo, "preset %s", name);
     if (unknown.length)
         live_notice(l, "preset %s: the effect has no %s", name, strbuf_text(&unknown));
     strbuf_free(&unknown);
@@ -118,4 +119,7 @@ void presets_draw(live *l) {
     if (ui_button("Reset all")) panel_reset(l, NULL);
     ui_tooltip("everything returns to what the effect file says");
     draw_saving(l, list);
+    ui_width(0);
+    if (ui_button("Write into the file")) write_back_ask(l, NULL);
+    ui_tooltip("everything that was changed becomes what the effect file says");
 }

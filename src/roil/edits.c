@@ -190,9 +190,9 @@ static void print_ramp(const roil_effect *e, const effect_control *c, const char
         strbuf_add(&between, ", ");
     strbuf_add(out, "{");
     source_entry entry = {.next = 1};
-    while (source_read_entry(made.text, entry.next, &entry))
+    while (source_read_entry(made.text, (source_range){0, made.length}, entry.next, &entry))
         add_entry(out, made.text, entry.all, strbuf_text(&between));
-    for (entry.next = old.begin + 1; source_read_entry(text, entry.next, &entry);)
+    for (entry.next = old.begin + 1; source_read_entry(text, old, entry.next, &entry);)
         if (text_is(text, entry.key, "name"))
             add_entry(out, text, entry.all, strbuf_text(&between));
     source_range indent = indent_of(text, old.end - 1);
@@ -360,7 +360,7 @@ roil_edits *roil_edits_create(roil_effect *e, const char *control) {
     const effect_control *one = control ? effect_find_control(e->effect, control) : NULL;
     if (control && !one) return NULL;
     roil_edits *x = mem_alloc(sizeof *x);
-    x->root = effect_root(e->effect);
+    x->root = arena_string(&x->memory, effect_root(e->effect)); // which may end before
     for (size_t i = 0; i < effect_control_count(e->effect); i++) {
         const effect_control *c = effect_get_control(e->effect, i);
         if (c->moved && (!one || one == c) && !is_overruled(e, c)) add_control(x, e, c);

@@ -113,6 +113,14 @@ bool roil_live_reset(roil_live *l, const char *name) {
     return is_fixed(c) || effect_reset(e, name);
 }
 
+char *roil_live_setting(roil_live *l, const char *name) {
+    pthread_mutex_lock(&l->lock);
+    const live_setting *s = find_setting(l, name);
+    char *text = s ? copy_text(s->text) : NULL;
+    pthread_mutex_unlock(&l->lock);
+    return text;
+}
+
 static bool holds(const live_setting *s, const effect_control *c) {
     return !s->initial || strcmp(s->initial, c->initial) == 0;
 }

@@ -163,7 +163,7 @@ static bool is_separator(const char *text, const token *t) {
     return is(text, t, ",") || is(text, t, ";");
 }
 
-bool source_read_entry(const char *text, size_t at, source_entry *out) {
+bool source_read_entry(const char *text, source_range table, size_t at, source_entry *out) {
     token first = next_token(text, at), second = next_token(text, first.at.end);
     *out = (source_entry){.next = 0};
     if (is(text, &first, "}") || first.kind == END) return false;
@@ -174,9 +174,10 @@ bool source_read_entry(const char *text, size_t at, source_entry *out) {
     } else if (is(text, &first, "[")) {
         size_t end = skip_nested(text, first.at.begin);
         token equals = next_token(text, end ? end : first.at.end);
-        if (second.kind == STRING)
+        bool quoted = second.kind == STRING && text[second.at.begin] != '[';
+        if (is(text, &equals, "=")) begin = next_token(text, equals.at.end).at.begin;
+        if (quoted && second.at.end - second.at.begin >= 2)
             out->key = (source_range){second.at.begin + 1, second.at.end - 1};
-        begin = next_token(text, equals.at.end).at.begin;
     }
     out->value = (source_range){begin, begin};
     token t = next_token(text, begin);
@@ -188,7 +189,7 @@ bool source_read_entry(const char *text, size_t at, source_entry *out) {
     }
     out->all = (source_range){first.at.begin, out->value.end};
     out->next = is_separator(text, &t) ? t.at.end : t.at.begin;
-    return t.kind != END;
+    return t.kind != END && out->next <= table.end; // brackets may not match
 }
 
 static bool is_range(const char *text, source_range range, const char *word) {
@@ -200,7 +201,7 @@ bool source_find_value(const char *text, source_range table, const char *key, si
                        source_range *out) {
     size_t unnamed = 0;
     source_entry e = {.next = table.begin + 1};
-    while (source_read_entry(text, e.next, &e)) {
+    while (source_read_entry(text, table, e.next, &e)) {
         bool named = e.key.end > e.key.begin;
         unnamed += !named;
         *out = e.value;
@@ -213,7 +214,7 @@ size_t source_table_end(const char *text, source_range table, bool *first) {
     source_entry e = {.next = table.begin + 1};
     size_t end = table.begin + 1;
     *first = true;
-    while (source_read_entry(text, e.next, &e)) {
+    while (source_read_entry(text, table, e.next, &e)) {
         end = e.value.end;
         *first = false;
     }

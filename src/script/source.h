@@ -24,7 +24,7 @@ typedef struct source_entry {     // of a table
 
 // Reads the entry at `at`: one byte after the table's brace, or the `next` of the one before.
 // False: the table has no more.
-bool source_read_entry(const char *text, size_t at, source_entry *out);
+bool source_read_entry(const char *text, source_range table, size_t at, source_entry *out);
 // Finds the value of a key in a table, or where `key` is NULL the value without a name at a place,
 // from 1. False: the table does not have it.
 bool source_find_value(const char *text, source_range table, const char *key, size_t place,

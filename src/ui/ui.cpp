@@ -221,10 +221,7 @@ void ui_begin(void) {
     use_pixels(io);
     io.DeltaTime = fminf(io.DeltaTime, 0.1f); // the loop may have slept
     ImGui::NewFrame();
-    bool let_go = true; // and not just now: that is still told
-    for (int i = 0; i < 3; i++)
-        let_go = let_go && !ImGui::IsMouseDown(i) && !ImGui::IsMouseReleased(i);
-    if (let_go) ui.bare = 0;
+    if (!ui_held()) ui.bare = 0;
 }
 
 void ui_end(roil_picture *out) {
@@ -242,6 +239,14 @@ void ui_end(roil_picture *out) {
     }
     picture_end(out);
     marks_write();
+}
+
+bool ui_held(void) {
+    bool held = false;
+    for (int i = 0; i < 3; i++)
+        held = held || (ImGui::IsMouseDown(i) && !ImGui::IsMouseClicked(i)) ||
+               ImGui::IsMouseReleased(i);
+    return held;
 }
 
 bool ui_wants_keys(void) {

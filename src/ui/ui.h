@@ -51,6 +51,7 @@ bool ui_pending(void); // there is input that the last frame could not take: dra
 void ui_begin(void);
 void ui_end(roil_picture *out); // fills in the triangles; valid until the next ui_begin
 bool ui_wants_keys(void);       // text is being typed
+bool ui_held(void); // a mouse button that was pressed before is down, or was let go just now
 void ui_copy(const char *text); // copies to the clipboard
 
 // ---- windows and layout -----------------------------------------------------------------------
@@ -118,6 +119,8 @@ bool ui_hovered(void); // the pointer is over the last widget
 bool ui_menu_begin(const char *id);
 void ui_menu_end(void);
 bool ui_item(const char *label);
+// A row of a list, as wide as the window. True: it was clicked.
+bool ui_row(const char *label, bool chosen, bool dim);
 
 typedef enum ui_icon {
     UI_ICON_PLAY,

@@ -377,6 +377,14 @@ void ui_menu_end(void) {
     ImGui::EndPopup();
 }
 
+bool ui_row(const char *label, bool chosen, bool dim) {
+    if (dim) ImGui::PushStyleColor(ImGuiCol_Text, ui_rgba(UI_DIM, 1));
+    bool clicked = ImGui::Selectable(label, chosen);
+    if (dim) ImGui::PopStyleColor();
+    mark_last(label);
+    return clicked;
+}
+
 bool ui_item(const char *label) {
     bool chosen = ImGui::MenuItem(label);
     mark_last(label);

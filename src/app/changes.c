@@ -1,0 +1,152 @@
+// Values that the user sets in the window, and undoing them: live_set and live_reset are the one
+// way in. A step that was written into files is undone in them; its values are set once the effect
+// has been loaded from them.
+#include "app/label.h"
+#include "app/live.h"
+#include "app/restart.h"
+#include "base/clock.h"
+#include "base/log.h"
+#include <stdio.h>
+
+static const float WIDTH = 260, HEIGHT = 320; // units
+
+// ---- setting ------------------------------------------------------------------------------------
+
+static void settle(live *l) {
+    live_redraw(l);
+    restart_arm(l);
+}
+
+void live_set(live *l, const char *name, const char *value) {
+    log_write(LOG_DEBUG, "live: set %s = %s", name, value);
+    char *before = roil_live_setting(l->follow, name);
+    if (roil_live_set(l->follow, name, value))
+        undo_note(&l->undo, name, before, value, clock_seconds());
+    else
+        live_notice(l, "%s", roil_error());
+    roil_free(before);
+    settle(l);
+}
+
+static void reset_one(live *l, const char *name) {
+    char *before = roil_live_setting(l->follow, name);
+    if (roil_live_reset(l->follow, name))
+        undo_note(&l->undo, name, before, NULL, clock_seconds());
+    else
+        live_notice(l, "%s", roil_error());
+    roil_free(before);
+}
+
+static void reset_all(live *l) {
+    size_t count = l->effect ? roil_control_count(l->effect) : 0;
+    for (size_t i = 0; i < count; i++) {
+        roil_control c;
+        roil_get_control(l->effect, i, &c);
+        if (c.moved) reset_one(l, c.name);
+    }
+    undo_label(&l->undo, "reset all");
+    if (!roil_live_reset(l->follow, NULL)) live_notice(l, "%s", roil_error());
+    l->camera_moved = false;
+}
+
+void live_reset(live *l, const char *name) {
+    log_write(LOG_DEBUG, "live: reset %s", name ? name : "everything");
+    if (name)
+        reset_one(l, name);
+    else
+        reset_all(l);
+    settle(l);
+}
+
+// ---- undoing ------------------------------------------------------------------------------------
+
+static void set_values(live *l, const undo_step *step, bool back) {
+    for (size_t i = 0; i < step->count; i++) {
+        const undo_value *v = &step->values[i];
+        const char *text = back ? v->before : v->after;
+        bool done =
+            text ? roil_live_set(l->follow, v->name, text) : roil_live_reset(l->follow, v->name);
+        if (!done) live_notice(l, "%s", roil_error());
+    }
+    l->camera_moved = false;
+    settle(l);
+}
+
+// Takes a step back, or again. False: a file is another one now, and the step stays.
+static bool take_step(live *l, const undo_step *step, bool back) {
+    if (!step->written) {
+        set_values(l, step, back);
+    } else if (!(back ? roil_edits_undo : roil_edits_write)(step->written)) {
+        live_notice(l, "%s", roil_error());
+        return false;
+    }
+    l->restored = step->written && back ? (size_t)(step - l->undo.steps) + 1 : 0;
+    return true;
+}
+
+static bool step_back(live *l) {
+    undo_step *step = l->effect ? undo_back(&l->undo) : NULL;
+    if (!step) return false;
+    if (!take_step(l, step, true)) return undo_again(&l->undo), false;
+    log_write(LOG_DEBUG, "live: undid %s", step->label);
+    live_notice(l, "Undid %s", step->label);
+    return true;
+}
+
+static bool step_on(live *l) {
+    undo_step *step = l->effect ? undo_again(&l->undo) : NULL;
+    if (!step) return false;
+    if (!take_step(l, step, false)) return undo_back(&l->undo), false;
+    log_write(LOG_DEBUG, "live: redid %s", step->label);
+    live_notice(l, "Did %s again", step->label);
+    return true;
+}
+
+void live_undo(live *l) {
+    if (l->undo.done == 0)
+        live_notice(l, "Nothing to undo");
+    else
+        step_back(l);
+}
+
+void live_redo(live *l) {
+    if (l->undo.done == l->undo.count)
+        live_notice(l, "Nothing to do again");
+    else
+        step_on(l);
+}
+
+void changes_take_over(live *l) {
+    size_t step = l->restored;
+    l->restored = 0;
+    if (step > 0 && step <= l->undo.count) set_values(l, &l->undo.steps[step - 1], true);
+}
+
+// ---- list ---------------------------------------------------------------------------------------
+
+static void go_to(live *l, size_t done) {
+    while (l->undo.done > done && step_back(l)) {
+    }
+    while (l->undo.done < done && step_on(l)) {
+    }
+}
+
+// The newest is on top; what was undone is dim.
+void changes_draw(live *l) {
+    if (!l->undo_list) return;
+    size_t chosen = l->undo.done;
+    const ui_rect where = label_place(l->view, WIDTH, HEIGHT, true);
+    if (ui_window_begin("What was done", &l->undo_list, where, false)) {
+        for (size_t i = l->undo.count; i-- > 0;) {
+            char id[24];
+            snprintf(id, sizeof id, "%zu", i);
+            ui_push(id);
+            if (ui_row(l->undo.steps[i].label, i + 1 == l->undo.done, i >= l->undo.done))
+                chosen = i + 1;
+            ui_pop();
+        }
+        if (ui_row("as it was at first", l->undo.done == 0, false)) chosen = 0;
+    }
+    ui_window_end();
+    go_to(l, chosen);
+}

@@ -1,0 +1,2 @@
+x = param { [[
+open

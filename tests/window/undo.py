@@ -1,0 +1,161 @@
+"""What hands did is undone, done again, and written into the file."""
+import os
+import random
+import re
+
+from lib.window import PUFF, Case, difference, main, require_tools
+
+VIEW = "view"
+ACTIONS = 5000 if os.environ.get("ROIL_LONG_TESTS") else 120
+
+
+class Undo(Case):
+    def picture(self, live):
+        return live.screenshot().crop(*live.widget(VIEW))
+
+    def looks_like(self, live, picture, what):
+        live.wait_until(lambda: difference(picture, self.picture(live)) < 3, what)
+
+    def slide(self, live, name, start, end):
+        left, top, right, bottom = live.widget(name)
+        middle = (top + bottom) / 2
+        live.drag((left + (right - left) * start, middle), (left + (right - left) * end, middle))
+
+    def turn(self, live, x, y):
+        left, top, right, bottom = live.widget(VIEW)
+        middle = ((left + right) / 2, (top + bottom) / 2)
+        live.drag(middle, (middle[0] + x, middle[1] + y))
+
+    def settled(self, live):
+        """The picture once all that was done before has come to it: input is taken in order."""
+        for key, frame in (("Right", 2), ("Left", 1)):
+            mark = live.mark()
+            live.keys(key)
+            live.expect(rf"live: drew frame {frame}\b", mark)
+        live.expect("live: shown")
+        return self.picture(live)
+
+    def test_a_gesture_at_a_time(self):
+        live = self.live()
+        live.expect("live: shown")
+        first = self.picture(live)
+        self.slide(live, "thickness", 0.2, 0.75)
+        thick = self.settled(live)
+        self.assertGreater(difference(first, thick), 8)
+        self.turn(live, 150, 60)
+        self.slide(live, "fire/stops", 0.4, 0.15)
+        self.assertEqual(self.read("puff.lua"), PUFF)
+        for label in ("fire", "camera"):
+            live.keys("ctrl+z")
+            live.expect(f"live: undid {label}")
+        self.looks_like(live, thick, "the picture before the camera was turned")
+        live.keys("ctrl+z")
+        live.expect("live: undid thickness")
+        self.looks_like(live, first, "the first picture")
+        live.wait_until(lambda: "thickness/reset" not in live.widgets(), "the script's value")
+        live.keys("ctrl+y")
+        live.expect("live: redid thickness")
+        self.looks_like(live, thick, "the picture again")
+        live.keys("u")  # the list: the newest on top
+        live.click_on("as it was at first")
+        live.expect("live: undid thickness")
+        live.keys("u")
+        self.looks_like(live, first, "the first picture")
+        live.quit()
+
+    def test_across_a_reload(self):
+        live = self.live()
+        live.expect("live: shown")
+        live.click_on("look")  # structure
+        live.keys("Down", "Return")
+        live.expect("live: took over")
+        self.slide(live, "thickness", 0.2, 0.75)
+        self.write("puff.lua", PUFF.replace("steps = steps, shadow_steps = 1", "steps = steps, shadow_steps = 2"))
+        live.expect("live: took over")
+        live.keys("ctrl+z")
+        live.expect("live: undid thickness")
+        live.keys("ctrl+z")
+        live.expect("live: undid look")
+        live.expect("live: took over")
+        live.wait_until(lambda: "look/reset" not in live.widgets(), "the script's word")
+        live.quit()
+
+    def test_what_was_tuned_goes_into_the_file(self):
+        live = self.live()
+        live.expect("live: shown")
+        self.slide(live, "thickness", 0.2, 0.75)
+        self.turn(live, 150, 60)
+        tuned = self.settled(live)
+        live.keys("w")
+        live.click_on("cancel")
+        live.wait_until(lambda: "cancel" not in live.widgets(), "the end of the question")
+        self.assertEqual(self.read("puff.lua"), PUFF)
+        live.keys("w")
+        live.click_on("write")
+        live.expect(r"live: wrote back 2")
+        live.expect("live: took over")
+        text = self.read("puff.lua")
+        self.assertRegex(text, r'param \{ "thickness", 1\d\.\d+, min = 0, max = 20, unit = "1/m", help = "of the smoke" \}')
+        self.assertRegex(text, r"orbit \{ target = \{0, 0, 1\}, distance = 6, pitch = [\d.-]+, yaw = [\d.-]+ \}")
+        differs = [a != b for a, b in zip(text.splitlines(), PUFF.splitlines())]
+        self.assertEqual((sum(differs), len(differs)), (2, len(PUFF.splitlines())))
+        live.wait_until(lambda: "thickness/reset" not in live.widgets(), "the file's value")
+        live.wait_until(lambda: difference(tuned, self.picture(live)) < 8, "the same picture")
+        live.keys("ctrl+z")
+        live.expect("live: undid written: puff.lua")
+        live.expect("live: took over")
+        self.assertEqual(self.read("puff.lua"), PUFF)
+        live.widget("thickness/reset")  # it is set, as before
+        self.looks_like(live, tuned, "the same picture")
+        live.keys("ctrl+y")
+        live.expect("live: redid written: puff.lua")
+        live.expect("live: took over")
+        self.assertEqual(self.read("puff.lua"), text)
+        live.quit()
+
+    def test_one_value_alone(self):
+        live = self.live("--set", "thickness=7.5", "--set", "size=2")
+        live.click_on("thickness", button=3)
+        live.click_on("thickness/write into the file")
+        live.click_on("write")
+        live.expect("live: wrote back 1")
+        self.assertEqual(self.read("puff.lua"), PUFF.replace('"thickness", 4', '"thickness", 7.5'))
+        live.quit()
+
+    def test_many_at_random(self):
+        """Whatever was done in whatever order: undone to the end, all is as it was."""
+        self.write("puff.presets/thick.lua", "return { thickness = 12, glow = false }")
+        live = self.live()
+        live.expect("live: shown")
+        first = self.picture(live)
+        chance = random.Random(7)
+        names = ["thickness", "size", "steps", "fire/stops"]
+        for _ in range(ACTIONS):
+            kind = chance.choice(["slide", "slide", "turn", "wheel", "glow", "preset", "undo", "undo", "redo"])
+            if kind == "slide":
+                self.slide(live, chance.choice(names), chance.random() * 0.9 + 0.05, chance.random() * 0.9 + 0.05)
+            elif kind == "turn":
+                self.turn(live, chance.uniform(-90, 90), chance.uniform(-90, 90))
+            elif kind == "wheel":
+                live.click(*live.middle(VIEW), button=chance.choice([4, 5]))
+            elif kind == "glow":
+                live.click_on("glow")
+            elif kind == "preset":
+                live.click_on("preset")
+                live.click_on("thick")
+            else:
+                live.keys("ctrl+z" if kind == "undo" else "ctrl+y")
+        self.assertGreater(sum("live: set " in line for line in live.log), ACTIONS / 3)
+        self.assertGreater(sum("live: undid " in line for line in live.log), ACTIONS / 20)
+        end = live.mark()
+        for _ in range(500):
+            live.keys("ctrl+z")
+        live.wait_until(lambda: not [name for name in live.widgets() if re.search("/reset$", name)],
+                        "the script's values")
+        self.assertTrue(any("live: undid" in line for line in live.log[end:]))
+        self.looks_like(live, first, "the first picture")
+        live.quit()
+
+
+require_tools()
+main()
