@@ -311,6 +311,7 @@ typedef struct roil_control { // strings live as long as the effect
     const char *label; // the part after the dot
     const char *group; // of a parameter: as declared, "" for none; else the part before the dot
     bool parameter;    // declared by the script, for its users
+    bool field;        // a number that a field was given, such as "lumps.frequency"
     roil_type type;
     int components;
     float value[4];   // now: of bool 0 or 1, of enum its index; of palette and curve nothing
@@ -325,8 +326,8 @@ typedef struct roil_control { // strings live as long as the effect
     bool moved;  // differs from the script, by a setting
 } roil_control;
 
-// Controls are listed in this order: parameters as declared; palettes and curves; camera, sun, sky
-// and lights; then the uniforms and options of each pass.
+// Controls are listed in this order: parameters as declared; palettes and curves; camera, sun, sky,
+// lights and materials; numbers of fields; then the uniforms and options of each pass.
 size_t roil_control_count(const roil_effect *e);
 void roil_get_control(roil_effect *e, size_t index, roil_control *out); // index below the count
 // Finds a control by name. Returns false with a message, which suggests a similar name.

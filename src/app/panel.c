@@ -76,6 +76,8 @@ static const char *chapter(panel_part part) {
     switch (part) {
     case PANEL_SHAPE:
         return "Palettes and curves";
+    case PANEL_FIELD:
+        return "Fields";
     case PANEL_CAMERA:
     case PANEL_SUN:
     case PANEL_SKY:

@@ -32,6 +32,7 @@ bool panel_matches(const roil_control *c, const char *search) {
 static panel_part part_of(const roil_control *c) {
     if (c->parameter) return c->group[0] ? PANEL_GROUP : PANEL_PARAMETERS;
     if (c->type == ROIL_PALETTE || c->type == ROIL_CURVE) return PANEL_SHAPE;
+    if (c->field) return PANEL_FIELD;
     if (strcmp(c->group, "camera") == 0) return PANEL_CAMERA;
     if (strcmp(c->group, "sun") == 0) return PANEL_SUN;
     if (strcmp(c->group, "sky") == 0) return PANEL_SKY;

@@ -70,6 +70,7 @@ field_grid *effect_add_bake(effect *e, const field *node, const effect_bake_desc
 const field *effect_add_tile(effect *e, const field *noise, const effect_tile_desc *desc) {
     field_tile tile;
     float side = (float)desc->cells;
+    e->tiled = true;
     if (!field_tile_create(&e->memory, noise, side, desc->octaves, &tile)) return NULL;
     effect_bake_desc bake = {
         .size = {desc->size, desc->size, desc->size},

@@ -25,6 +25,7 @@ static void print(const effect *e, const control *c, strbuf *out) {
     case EFFECT_CONTROL_SCENE:
     case EFFECT_CONTROL_LIGHT:
     case EFFECT_CONTROL_MATERIAL:
+    case EFFECT_CONTROL_FIELD:
     case EFFECT_CONTROL_UNIFORM:
         field_control_print(e, c, out);
         break;
@@ -181,6 +182,7 @@ static bool set(effect *e, control *c, const char *text) {
     case EFFECT_CONTROL_SCENE:
     case EFFECT_CONTROL_LIGHT:
     case EFFECT_CONTROL_MATERIAL:
+    case EFFECT_CONTROL_FIELD:
     case EFFECT_CONTROL_UNIFORM:
         return field_control_set(e, c, text);
     case EFFECT_CONTROL_EVENTS:
@@ -222,6 +224,9 @@ void effect_reset_control(effect *e, control *c) {
     case EFFECT_CONTROL_MATERIAL:
     case EFFECT_CONTROL_UNIFORM:
         *c->slot = c->original;
+        break;
+    case EFFECT_CONTROL_FIELD:
+        memcpy(c->nodes[0]->value, c->original->value, sizeof c->original->value);
         break;
     case EFFECT_CONTROL_EVENTS:
         events_control_reset(e);

@@ -1,4 +1,5 @@
-// Controls that are fields in a slot: uniforms of passes, values of the scene, lights, materials.
+// Controls that are fields in a slot: uniforms of passes, values of the scene, lights, materials;
+// and numbers that fields in space were given.
 #include "base/error.h"
 #include "base/memory.h"
 #include "effect/effect_impl.h"
@@ -6,6 +7,7 @@
 
 const field *effect_control_field(const effect *e, const effect_control *c) {
     const control *own = (const control *)c;
+    if (c->kind == EFFECT_CONTROL_FIELD) return own->nodes[0];
     if (!own->slot || *own->slot || c->kind != EFFECT_CONTROL_UNIFORM)
         return own->slot ? *own->slot : NULL;
     const value_desc *declared;
@@ -23,10 +25,55 @@ const float *effect_control_default(const effect *e, const effect_control *c) {
     return declared->value;
 }
 
+// ---- numbers of fields --------------------------------------------------------------------------
+
+bool effect_has_room_for_field(const effect *e) {
+    return e->field_count < EFFECT_MAX_FIELDS;
+}
+
+bool effect_has_tiles(const effect *e) {
+    return e->tiled;
+}
+
+static bool is_taken(effect *e, const char *name) {
+    for (size_t i = 0; i < e->control_count; i++) {
+        const effect_control *c = &e->controls[i]->face;
+        if (strcmp(c->name, name) == 0) return true;
+        if (c->kind >= EFFECT_CONTROL_SCENE && strcmp(c->group, name) == 0) return true;
+    }
+    return false;
+}
+
+bool effect_add_field(effect *e, const char *name, const field_kind *kind, field *const *values) {
+    if (!effect_has_room_for_field(e)) return true;
+    e->field_count++;
+    const char *group = arena_string(&e->memory, name);
+    for (int i = 2; is_taken(e, group); i++) group = arena_format(&e->memory, "%s_%d", name, i);
+    for (size_t i = 0; i < FIELD_MAX_ARGS && kind->args[i].desc.name; i++) {
+        if (!values[i]) continue;
+        value_desc *desc = arena_copy(&e->memory, &kind->args[i].desc, sizeof *desc);
+        desc->components = values[i]->components;
+        control *c =
+            effect_add_member(e, group, desc,
+                              (control){.face = {.kind = EFFECT_CONTROL_FIELD},
+                                        .nodes = {values[i]},
+                                        .original = field_constant(
+                                            &e->memory, values[i]->components, values[i]->value)});
+        if (!effect_apply_to(e, c)) return false;
+    }
+    return true;
+}
+
+// ---- setting and saying -------------------------------------------------------------------------
+
 bool field_control_set(effect *e, control *c, const char *text) {
     const value_desc *desc = c->face.desc;
     float value[4];
     if (!value_parse(desc, c->face.name, text, value)) return false;
+    if (c->face.kind == EFFECT_CONTROL_FIELD) { // programs and the host read it in each frame
+        memcpy(c->nodes[0]->value, value, sizeof value);
+        return true;
+    }
     field **node = &c->nodes[!c->turn];
     if (!*node) *node = field_constant(&e->memory, 4, value);
     (*node)->components = desc->components == 2 ? 3 : desc->components; // of a field: 1, 3 or 4

@@ -173,6 +173,15 @@ const char *effect_add_curve(effect *e, curve *c, const char *name);
 // Adds a number over a particle's life: a curve over age, 0 to 1, linear between its keys. `shown`,
 // the palette that fields read, is updated whenever the curve changes.
 const char *effect_add_age_curve(effect *e, curve *c, palette *shown, const char *name);
+enum { EFFECT_MAX_FIELDS = 256 }; // fields whose numbers are controls; those of later ones are not
+bool effect_has_room_for_field(const effect *e);
+// Makes controls of numbers that a field was given: "lumps.frequency". `values`: by argument of its
+// kind a constant of its own, whose value settings change, or NULL. `name` is made unique. False
+// with a message when a setting of such a name is wrong.
+bool effect_add_field(effect *e, const char *name, const field_kind *kind, field *const *values);
+// Returns whether tiles were made, whose size and octaves follow from numbers of fields: another
+// number then needs another load.
+bool effect_has_tiles(const effect *e);
 void effect_mark_structural(effect *e, size_t param);
 
 // ---- asking -----------------------------------------------------------------------------------
@@ -198,6 +207,7 @@ typedef enum effect_control_kind {
     EFFECT_CONTROL_SCENE,    // "camera.fov", "sun.azimuth", "sky.strength"
     EFFECT_CONTROL_LIGHT,    // "lamp.power"
     EFFECT_CONTROL_MATERIAL, // "rust.roughness"
+    EFFECT_CONTROL_FIELD,    // "lumps.frequency"
     EFFECT_CONTROL_EVENTS,   // "effect.events"
     EFFECT_CONTROL_UNIFORM,  // "march.steps"
     EFFECT_CONTROL_OPTION,   // "march.mode"

@@ -51,7 +51,8 @@ typedef struct control {
     char *text;          // of face.moved
     size_t text_capacity;
     // Of a uniform and a value of the scene: where its field is held, what the script gave (NULL:
-    // the default), and two constants that settings take in turn.
+    // the default), and two constants that settings take in turn. Of a number of a field: the
+    // constant, whose value settings change, and a copy of it before any.
     const field **slot, *original;
     field *nodes[2];
     int turn;
@@ -168,7 +169,9 @@ struct effect {
     control **controls; // in the order of their list
     size_t control_count, control_capacity;
     size_t controlled; // passes that have theirs
-    size_t ramp_count; // palettes and curves among them
+    size_t ramp_count;  // palettes and curves among them
+    size_t field_count; // fields whose numbers are among them
+    bool tiled;         // effect_add_tile was called
 };
 
 // Reports progress while frames without a picture run. False with a message: the user cancelled.

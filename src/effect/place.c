@@ -33,6 +33,8 @@ static const void *made_by_script(const effect *e, const control *c) {
     case EFFECT_CONTROL_LIGHT:
     case EFFECT_CONTROL_MATERIAL:
         return c->face.moved ? c->original : *c->slot;
+    case EFFECT_CONTROL_FIELD:
+        return c->nodes[0];
     case EFFECT_CONTROL_UNIFORM:
     case EFFECT_CONTROL_OPTION:
     case EFFECT_CONTROL_SCALE:

@@ -86,6 +86,7 @@ void roil_get_control(roil_effect *e, size_t index, roil_control *out) {
                           .help = desc->help,
                           .words = desc->words,
                           .word_count = desc->word_count,
+                          .field = c->kind == EFFECT_CONTROL_FIELD,
                           .moved = c->moved != NULL};
     if (c->kind == EFFECT_CONTROL_PARAM)
         fill_param(effect_get_param(e->effect, c->index), out);
@@ -93,6 +94,7 @@ void roil_get_control(roil_effect *e, size_t index, roil_control *out) {
         fill_structure(e, c, out);
     else if (desc->type != VALUE_OTHER)
         fill_field(e, c, out);
+    if (out->field) out->structural = effect_has_tiles(e->effect);
 }
 
 size_t roil_control_count(const roil_effect *e) {

@@ -228,7 +228,8 @@ static bool check_value(const effect_control *c, const char *text, const source_
     char shown[SHOWN];
     source_range at;
     if (!find_value(c, text, call, key, &at))
-        return !is_param(c) || err_set("its default is not written there");
+        return (!is_param(c) && c->kind != EFFECT_CONTROL_FIELD) ||
+               err_set("it is not written there by its name");
     show(text, at, shown);
     if (!source_is_literal(text, at)) return err_set("it is computed there: %s", shown);
     if (compare && !is_initial(c, text, at))

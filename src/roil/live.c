@@ -72,7 +72,7 @@ static bool is_fixed(const effect_control *c) {
 }
 
 static bool is_structural(const effect *e, const effect_control *c) {
-    return is_fixed(c) ||
+    return is_fixed(c) || (c->kind == EFFECT_CONTROL_FIELD && effect_has_tiles(e)) ||
            (c->kind == EFFECT_CONTROL_PARAM && effect_get_param(e, c->index)->structural);
 }
 

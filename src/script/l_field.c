@@ -41,6 +41,7 @@ typedef struct kind_call {
     const field *args[FIELD_MAX_ARGS];
     uint8_t options[FIELD_MAX_OPTIONS];
     bool chosen[FIELD_MAX_OPTIONS]; // the script gave the option
+    bool written[FIELD_MAX_ARGS];   // the argument is a number, and no field
     size_t arg_count;               // of the kind
     size_t next;                    // argument that the next positional value is for
 } kind_call;
@@ -53,6 +54,7 @@ static void take_arg(lua_State *L, kind_call *call, size_t i, int index) {
     const field_arg *arg = &kind->args[i];
     if (call->args[i]) vm_error(L, "%s: '%s' is given twice", kind->name, arg->desc.name);
     value_refuse_two(L, index, kind->name, arg->desc.name, arg->desc.components);
+    call->written[i] = lua_type(L, index) != LUA_TUSERDATA;
     call->args[i] = value_field(L, index, kind->name, arg->desc.name, arg->desc.components);
 }
 
@@ -136,6 +138,26 @@ static bool push_number(lua_State *L, const field_kind *kind, int count) {
     return true;
 }
 
+// Numbers that are written out in the call become controls, named after the variable.
+static void declare_numbers(lua_State *L, const kind_call *call) {
+    effect *e = script_of(L)->effect;
+    field *values[FIELD_MAX_ARGS] = {0};
+    size_t count = 0;
+    if (strcmp(call->kind->group, "operator") == 0 || !effect_has_room_for_field(e)) return;
+    for (size_t i = 0; i < call->arg_count; i++) {
+        if (!call->args[i] || !call->written[i] || !field_is_constant(call->args[i])) continue;
+        values[i] = (field *)(uintptr_t)call->args[i];
+        script_note_place(L, values[i], call->kind->name);
+        count++;
+    }
+    if (count == 0) return;
+    char name[64];
+    vm_charge_memory(L, count * EFFECT_CONTROL_COST);
+    if (!value_variable(L, call->kind->name, name, sizeof name))
+        str_copy(name, sizeof name, call->kind->name);
+    if (!effect_add_field(e, name, call->kind, values)) script_raise(L);
+}
+
 // Upvalue: the kind. If the last argument is a table with names, it holds arguments and options.
 static int l_kind(lua_State *L) {
     const field_kind *kind = lua_touserdata(L, lua_upvalueindex(1));
@@ -154,6 +176,7 @@ static int l_kind(lua_State *L) {
     imply_dimensions(&call);
     if (strcmp(kind->name, "advect") == 0) vm_charge_memory(L, FIELD_ADVECT_COST);
     field_push(L, field_make(script_memory(L), kind->name, call.args, call.options));
+    declare_numbers(L, &call);
     return 1;
 }
 

@@ -71,6 +71,10 @@ static bool name_by_source(lua_State *L, const char *who, char *out, size_t capa
     return false;
 }
 
+bool value_variable(lua_State *L, const char *call, char *out, size_t capacity) {
+    return name_by_source(L, call, out, capacity);
+}
+
 const char *value_name_or_variable(lua_State *L, int table, const char *who) {
     const char *given = value_get_string(L, table, who, "name");
     if (given && !str_is_identifier(given))

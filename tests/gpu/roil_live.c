@@ -309,6 +309,30 @@ static void moved_value_survives_an_edit(void **state) {
     end(&s);
 }
 
+// Draws a field whose number is `radius` with the effect at hand, and again loaded anew.
+static void number_of_a_field_moves_in_place(void **state) {
+    static uint8_t set[WIDTH * HEIGHT * 4], loaded[sizeof set], first[sizeof set];
+    const char *text = "local fx = effect { }\n"
+                       "local ball = sphere { radius = 0.5, falloff = 0.3 }\n"
+                       "fx.camera = orbit { distance = 6 }\n"
+                       "fx.output = final { march { density = ball * 9, emission = ball } }.color\n"
+                       "return fx\n";
+    char path[512];
+    write_text("ball.lua", text, path);
+    roil_effect *e = roil_load(*state, path, NULL, 0);
+    ok(e && roil_prepare(e, WIDTH, HEIGHT) && roil_render(e, 1) && roil_read(e, false, first));
+    ok(roil_set(e, "ball.radius", "1.5") && roil_render(e, 1) && roil_read(e, false, set));
+    roil_effect *other = roil_load(*state, path, &(roil_setting){"ball.radius", "1.5"}, 1);
+    ok(other && roil_prepare(other, WIDTH, HEIGHT) && roil_render(other, 1));
+    ok(roil_read(other, false, loaded));
+    assert_memory_equal(set, loaded, sizeof set);
+    assert_true(memcmp(set, first, sizeof set) != 0);
+    ok(roil_reset(e, "ball.radius") && roil_render(e, 1) && roil_read(e, false, set));
+    assert_memory_equal(set, first, sizeof set);
+    roil_unload(other);
+    roil_unload(e);
+}
+
 static void moved_value_yields_to_a_changed_default(void **state) {
     session s = begin(*state);
     ok(roil_live_set(s.live, "gain", "1"));
@@ -465,6 +489,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_teardown(reload_needs_no_room_for_the_old_effect, allow_as_ever),
         cmocka_unit_test(preset_is_followed),
+        cmocka_unit_test(number_of_a_field_moves_in_place),
         cmocka_unit_test(number_edit_shows_and_the_simulation_goes_on),
         cmocka_unit_test(structural_edit_shows_and_the_simulation_goes_on),
         cmocka_unit_test(module_edit_shows),

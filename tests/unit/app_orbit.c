@@ -24,11 +24,11 @@ static void near3(const float a[3], const float b[3], float within) {
 static void what_goes_in_comes_out(void **state) {
     (void)state;
     static const roil_camera cameras[] = {
-        {{4, -12, 3.36f}, {4, 4, 3.36f}, 31.89f},
-        {{5, 0, 0}, {0, 0, 0}, 60},
-        {{-3, 2, 8}, {1, 1, 1}, 20},
-        {{0.01f, 0.02f, -0.01f}, {0, 0, 0}, 45},
-        {{1000, -2000, 500}, {0, 0, 0}, 10},
+        {.eye = {4, -12, 3.36f}, .target = {4, 4, 3.36f}, .fov = 31.89f},
+        {.eye = {5, 0, 0}, .target = {0, 0, 0}, .fov = 60},
+        {.eye = {-3, 2, 8}, .target = {1, 1, 1}, .fov = 20},
+        {.eye = {0.01f, 0.02f, -0.01f}, .target = {0, 0, 0}, .fov = 45},
+        {.eye = {1000, -2000, 500}, .target = {0, 0, 0}, .fov = 10},
     };
     for (size_t i = 0; i < sizeof cameras / sizeof *cameras; i++) {
         orbit o;
@@ -44,9 +44,9 @@ static void what_goes_in_comes_out(void **state) {
 static void yaw_counts_as_in_lua(void **state) {
     (void)state;
     orbit o;
-    orbit_from(&o, &(roil_camera){{0, -6, 0}, {0, 0, 0}, 40});
+    orbit_from(&o, &(roil_camera){.eye = {0, -6, 0}, .target = {0, 0, 0}, .fov = 40});
     assert_true(fabsf(o.yaw) < 1e-4f && fabsf(o.pitch) < 1e-4f); // looks along +Y
-    orbit_from(&o, &(roil_camera){{6, 0, 6}, {0, 0, 0}, 40});
+    orbit_from(&o, &(roil_camera){.eye = {6, 0, 6}, .target = {0, 0, 0}, .fov = 40});
     assert_true(fabsf(o.yaw - 90) < 1e-4f && fabsf(o.pitch - 45) < 1e-4f);
 }
 
@@ -54,10 +54,10 @@ static void straight_down_and_nowhere_are_no_accident(void **state) {
     (void)state;
     orbit o;
     roil_camera back;
-    orbit_from(&o, &(roil_camera){{1, 2, 9}, {1, 2, 3}, 40});
+    orbit_from(&o, &(roil_camera){.eye = {1, 2, 9}, .target = {1, 2, 3}, .fov = 40});
     orbit_to(&o, &back);
     near3(back.eye, (float[3]){1, 2, 9}, 1e-4f);
-    orbit_from(&o, &(roil_camera){{1, 2, 3}, {1, 2, 3}, 40});
+    orbit_from(&o, &(roil_camera){.eye = {1, 2, 3}, .target = {1, 2, 3}, .fov = 40});
     assert_true(o.distance > 0 && isfinite(o.yaw) && isfinite(o.pitch));
 }
 
@@ -65,7 +65,7 @@ static void turning_keeps_the_distance_and_the_horizon(void **state) {
     (void)state;
     orbit o;
     roil_camera camera;
-    orbit_from(&o, &(roil_camera){{0, -6, 1}, {0, 0, 1}, 40});
+    orbit_from(&o, &(roil_camera){.eye = {0, -6, 1}, .target = {0, 0, 1}, .fov = 40});
     for (int i = 0; i < 500; i++) {
         orbit_turn(&o, 7.3f, 3.1f);
         orbit_to(&o, &camera);
@@ -81,7 +81,7 @@ static void panning_moves_by_shares_of_the_picture(void **state) {
     roil_camera camera;
     vec3 before, after;
     const float aspect = 1.5f, point[3] = {0, 0, 1};
-    orbit_from(&o, &(roil_camera){{2, -6, 3}, {0, 0, 1}, 40});
+    orbit_from(&o, &(roil_camera){.eye = {2, -6, 3}, .target = {0, 0, 1}, .fov = 40});
     orbit_to(&o, &camera);
     project(&camera, aspect, point, before);
     orbit_pan(&o, 0.25f, 0.1f); // to the right and down, as the pointer does
@@ -93,10 +93,11 @@ static void panning_moves_by_shares_of_the_picture(void **state) {
 
 static void a_raised_eye_is_as_high_as_said(void **state) {
     (void)state;
-    static const roil_camera cameras[] = {{{0, -6, -2}, {0, 0, 1}, 40}, // below what it looks at
-                                          {{3, -1, 0.5f}, {1, 1, 0}, 40},
-                                          {{0, -1, -9}, {0, 0, -8}, 40}, // too near to be turned
-                                          {{0, -6, 4}, {0, 0, 1}, 40}};  // high enough
+    static const roil_camera cameras[] = {
+        {.eye = {0, -6, -2}, .target = {0, 0, 1}, .fov = 40}, // below what it looks at
+        {.eye = {3, -1, 0.5f}, .target = {1, 1, 0}, .fov = 40},
+        {.eye = {0, -1, -9}, .target = {0, 0, -8}, .fov = 40}, // too near to be turned
+        {.eye = {0, -6, 4}, .target = {0, 0, 1}, .fov = 40}};  // high enough
     for (size_t i = 0; i < sizeof cameras / sizeof *cameras; i++)
         for (int shift = 0; shift < 2; shift++) {
             orbit o, before;
@@ -116,7 +117,7 @@ static void a_raised_eye_is_as_high_as_said(void **state) {
 static void zooming_never_reaches_the_target(void **state) {
     (void)state;
     orbit o;
-    orbit_from(&o, &(roil_camera){{0, -6, 1}, {0, 0, 1}, 40});
+    orbit_from(&o, &(roil_camera){.eye = {0, -6, 1}, .target = {0, 0, 1}, .fov = 40});
     float before = o.distance;
     orbit_zoom(&o, 1);
     assert_true(o.distance < before);

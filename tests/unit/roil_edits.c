@@ -186,6 +186,59 @@ static void what_is_computed_stays(void **state) {
             "'distance': it is computed there: math.sqrt(16)");
 }
 
+static const char field_text[] = HEAD
+    "local lumps = worley { frequency = 1.5, octaves = 3, seed = 1 }\n"
+    "local way = vec(1, 0, 0)\n"
+    "fx.output = march { density = sphere { position = {0, 0, 1}, radius = 2 } * lumps,\n"
+    "  emission = sphere { position = way, radius = lumps } * box { {0, 0, 0}, {1, 1, 1} } }\n";
+
+static void numbers_of_fields_are_controls(void **state) {
+    (void)state;
+    static const roil_setting moved[] = {
+        {"lumps.frequency", "4"}, {"density.position", "0,1,0"}, {"box.size", "2,3,4"}};
+    roil_effect *e = roil_open(field_text, moved, COUNT_OF(moved));
+    size_t index;
+    roil_control c;
+    need(roil_find_control(e, "lumps.frequency", &index));
+    roil_get_control(e, index, &c);
+    assert_true(c.field && c.moved && !c.driven && !c.structural && c.type == ROIL_FLOAT);
+    assert_float_equal(c.value[0], 4, 0);
+    assert_float_equal(c.initial[0], 1.5, 0);
+    assert_string_equal(c.unit, "1/m");
+    assert_string_equal(c.group, "lumps");
+    refused(roil_find_control(e, "emission.position", &index), "nothing is named"); // a field
+    refused(roil_set(e, "lumps.octaves", "99"), "accepted: 1 to 12");
+    need(roil_set(e, "lumps.octaves", "5"));
+    need(roil_reset(e, "lumps.octaves"));
+    char *text = roil_control_text(e, "lumps.octaves");
+    assert_string_equal(text, "3");
+    roil_free(text);
+    roil_edit list[4];
+    roil_edits *x = edits_of(e, NULL);
+    need(roil_edits_write(x));
+    assert_int_equal(roil_edits_list(x, list, 4), 3);
+    assert_string_equal(list[0].controls, "box.size");
+    assert_non_null(strstr(list[0].refusal, "it is not written there by its name"));
+    assert_string_equal(list[1].after,
+                        "local lumps = worley { frequency = 4, octaves = 3, seed = 1 }");
+    assert_non_null(strstr(list[2].after, "sphere { position = {0, 1, 0}, radius = 2 }"));
+    roil_edits_free(x);
+    roil_unload(e);
+}
+
+static void a_tile_follows_by_another_load(void **state) {
+    (void)state;
+    roil_effect *e = roil_open(HEAD "local lumps = worley { frequency = 1.5 }:tile()\n"
+                                    "fx.output = march { density = sphere { } * lumps }\n",
+                               NULL, 0);
+    size_t index;
+    roil_control c;
+    need(roil_find_control(e, "lumps.frequency", &index));
+    roil_get_control(e, index, &c);
+    assert_true(c.structural);
+    roil_unload(e);
+}
+
 static void a_file_that_changed_is_left_alone(void **state) {
     (void)state;
     roil_effect *e = roil_open(script_text, &(roil_setting){"density", "3"}, 1);
@@ -239,6 +292,8 @@ int main(void) {
         cmocka_unit_test(what_will_change_is_listed),
         cmocka_unit_test(a_turned_camera_is_an_orbit_again),
         cmocka_unit_test(what_is_computed_stays),
+        cmocka_unit_test(numbers_of_fields_are_controls),
+        cmocka_unit_test(a_tile_follows_by_another_load),
         cmocka_unit_test(a_file_that_changed_is_left_alone),
         cmocka_unit_test(modules_of_the_effect_are_written),
     };
