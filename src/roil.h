@@ -442,6 +442,10 @@ typedef struct roil_edits roil_edits;
 // Finds what to write for a control, or, for NULL, for every control that was changed. Reads the
 // files. Free it with roil_edits_free. NULL with a message: there is no such control.
 roil_edits *roil_edits_create(roil_effect *e, const char *control);
+// The same for one that becomes a parameter of the script, with its value, range, unit and help:
+// steps = param { "march_steps", 64, min = 1, max = 4096 }. NULL with a message also for what can
+// be none.
+roil_edits *roil_edits_create_parameter(roil_effect *e, const char *control);
 size_t roil_edits_list(const roil_edits *x, roil_edit *out, size_t capacity);
 // Write the files, and write them as they were before. False with a message: a file is not what it
 // is supposed to be, and none was written; or one cannot be written.

@@ -85,6 +85,7 @@ void changes_draw(live *l);      // the list of what was done
 // ---- write_back.c: what was changed is written into the effect's files --------------------------
 
 void write_back_ask(live *l, const char *control); // NULL: every control that was changed
+void write_back_pin(live *l, const char *control); // becomes a parameter
 void write_back_draw(live *l);                     // shows what will change
 void write_back_close(live *l);
 

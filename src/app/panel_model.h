@@ -8,7 +8,7 @@ typedef enum panel_part {
     PANEL_PARAMETERS, // parameters without a group
     PANEL_GROUP,      // a group of parameters
     PANEL_SHAPE,      // one palette or curve
-    PANEL_FIELD, // numbers of one field
+    PANEL_FIELD,      // numbers of one field
     PANEL_CAMERA,
     PANEL_SUN,
     PANEL_SKY,

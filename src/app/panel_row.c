@@ -45,6 +45,7 @@ static void menu(live *l, const roil_control *c, const char *id) {
     if (c->driven && ui_item("Override")) row_set_value(l, c, c->value);
     if (c->moved && ui_item("Reset")) panel_reset(l, c->name);
     if (c->moved && ui_item("Write into the file")) write_back_ask(l, c->name);
+    if (!c->parameter && !c->driven && ui_item("Make it a parameter")) write_back_pin(l, c->name);
     if (ui_item("Copy as Lua")) panel_copy_lua(l, c->name);
     if (ui_item("Copy name")) ui_copy(c->name);
     ui_menu_end();

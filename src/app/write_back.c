@@ -25,12 +25,11 @@ void write_back_close(live *l) {
     l->writing = NULL;
 }
 
-void write_back_ask(live *l, const char *control) {
+static void open_edits(live *l, roil_edits *edits, const char *control) {
     write_back_close(l);
-    roil_edits *edits = l->effect ? roil_edits_create(l->effect, control) : NULL;
     size_t count = edits ? roil_edits_list(edits, NULL, 0) : 0;
     if (count == 0) {
-        live_notice(l, l->effect && !edits ? roil_error() : "Nothing was changed");
+        live_notice(l, edits ? "Nothing was changed" : roil_error());
         roil_edits_free(edits);
         return;
     }
@@ -40,6 +39,14 @@ void write_back_ask(live *l, const char *control) {
     w->count = roil_edits_list(edits, w->list, count);
     if (control) str_copy(w->control, sizeof w->control, control);
     for (size_t i = 0; i < count; i++) w->writable += !w->list[i].refusal;
+}
+
+void write_back_ask(live *l, const char *control) {
+    if (l->effect) open_edits(l, roil_edits_create(l->effect, control), control);
+}
+
+void write_back_pin(live *l, const char *control) {
+    if (l->effect) open_edits(l, roil_edits_create_parameter(l->effect, control), control);
 }
 
 // ---- writing ------------------------------------------------------------------------------------

@@ -28,6 +28,7 @@ typedef struct edited_file {
 struct roil_edits {
     arena memory;
     const char *root; // the effect's folder, which files must lie in
+    bool pins;        // values become parameters
     edited_file *files;
     size_t file_count, file_capacity;
     roil_edit *list;
@@ -261,6 +262,30 @@ static bool write_orbit(roil_edits *x, roil_effect *e, edited_file *f, const eff
     return true;
 }
 
+// "march.steps" becomes the parameter "march_steps".
+static bool add_parameter(roil_effect *e, const effect_control *c, strbuf *out) {
+    strbuf name = {0};
+    strbuf_add(&name, "%s", c->name);
+    for (char *at = name.text; (at = strchr(at, '.'));) *at = '_';
+    bool taken = effect_find_control(e->effect, name.text) != NULL;
+    if (taken)
+        err_set("there is a '%s' already", name.text);
+    else
+        roil_add_param_lua(e, c, name.text, out);
+    strbuf_free(&name);
+    return !taken;
+}
+
+static bool add_value(const roil_edits *x, roil_effect *e, const effect_control *c,
+                      const edited_file *f, const source_call *call, strbuf *out) {
+    if (x->pins) return add_parameter(e, c, out);
+    if (is_ramp(c))
+        print_ramp(e, c, f->before, call->table, out);
+    else
+        roil_add_lua(e, c, true, out);
+    return true;
+}
+
 static bool write_control(roil_edits *x, roil_effect *e, const effect_control *c) {
     const effect_place *place = effect_control_place(e->effect, c);
     source_call call;
@@ -272,15 +297,13 @@ static bool write_control(roil_edits *x, roil_effect *e, const effect_control *c
         return err_prefix("%s: ", path_name(place->file));
     const char *key = c->desc->name;
     bool orbit = strcmp(place->call, "orbit") == 0;
-    if (orbit && strcmp(c->name, "camera.eye") == 0) return write_orbit(x, e, f, c, &call);
+    if (orbit && !x->pins && strcmp(c->name, "camera.eye") == 0)
+        return write_orbit(x, e, f, c, &call);
     if (!check_value(c, f->before, &call, key, true))
         return err_prefix("%s:%d: ", path_name(place->file), place->line);
     strbuf value = {0};
-    if (is_ramp(c))
-        print_ramp(e, c, f->before, call.table, &value);
-    else
-        roil_add_lua(e, c, true, &value);
-    bool done = put(x, f, c, &call, key, strbuf_text(&value));
+    bool done =
+        add_value(x, e, c, f, &call, &value) && put(x, f, c, &call, key, strbuf_text(&value));
     strbuf_free(&value);
     return done;
 }
@@ -357,14 +380,14 @@ static bool is_overruled(roil_effect *e, const effect_control *c) {
     return eye && eye->moved;
 }
 
-roil_edits *roil_edits_create(roil_effect *e, const char *control) {
-    const effect_control *one = control ? effect_find_control(e->effect, control) : NULL;
-    if (control && !one) return NULL;
+// `one`: NULL for all that were moved.
+static roil_edits *create_edits(roil_effect *e, const effect_control *one, bool pins) {
     roil_edits *x = mem_alloc(sizeof *x);
+    x->pins = pins;
     x->root = arena_string(&x->memory, effect_root(e->effect)); // which may end before
     for (size_t i = 0; i < effect_control_count(e->effect); i++) {
         const effect_control *c = effect_get_control(e->effect, i);
-        if (c->moved && (!one || one == c) && !is_overruled(e, c)) add_control(x, e, c);
+        if ((c->moved || pins) && (!one || one == c) && !is_overruled(e, c)) add_control(x, e, c);
     }
     for (size_t i = 0; i < x->file_count; i++) {
         edited_file *f = &x->files[i];
@@ -372,6 +395,22 @@ roil_edits *roil_edits_create(roil_effect *e, const char *control) {
         add_replaced(f, 0, strlen(f->before), &f->after);
     }
     return x;
+}
+
+roil_edits *roil_edits_create(roil_effect *e, const char *control) {
+    const effect_control *one = control ? effect_find_control(e->effect, control) : NULL;
+    return control && !one ? NULL : create_edits(e, one, false);
+}
+
+roil_edits *roil_edits_create_parameter(roil_effect *e, const char *control) {
+    const effect_control *c = effect_find_control(e->effect, control);
+    if (c && (is_param(c) || is_ramp(c) || c->kind == EFFECT_CONTROL_EVENTS)) {
+        err_set("'%s' cannot become a parameter; numbers and words of passes, fields, camera, sun, "
+                "sky, lights and materials can",
+                control);
+        return NULL;
+    }
+    return c ? create_edits(e, c, true) : NULL;
 }
 
 size_t roil_edits_list(const roil_edits *x, roil_edit *out, size_t capacity) {

@@ -163,10 +163,10 @@ static void add_words(strbuf *out, const roil_control *c) {
     strbuf_append(out, "}", 1);
 }
 
-static void add_param(strbuf *out, const roil_control *c) {
+static void add_param(strbuf *out, const roil_control *c, const char *name) {
     bool ranged = c->type != ROIL_ENUM && c->type != ROIL_BOOL;
     char hex[8];
-    strbuf_add(out, "param { \"%s\", ", c->name);
+    strbuf_add(out, "param { \"%s\", ", name);
     add_control_value(out, c, c->value);
     if (ranged && isfinite(c->min)) add_number_key(out, "min", c->min);
     if (ranged && isfinite(c->max)) add_number_key(out, "max", c->max);
@@ -175,9 +175,16 @@ static void add_param(strbuf *out, const roil_control *c) {
     if (c->log_scale) strbuf_add(out, ", log = true");
     if (c->type == ROIL_ENUM) add_words(out, c);
     add_text_key(out, "unit", c->unit);
-    add_text_key(out, "group", c->group);
+    if (c->parameter) add_text_key(out, "group", c->group);
     add_text_key(out, "help", c->help);
     strbuf_add(out, " }");
+}
+
+void roil_add_param_lua(const roil_effect *e, const effect_control *c, const char *name,
+                        strbuf *out) {
+    roil_control control;
+    find_and_get(e, c->name, &control);
+    add_param(out, &control, name);
 }
 
 char *roil_control_lua(roil_effect *e, const char *name) {
@@ -187,7 +194,7 @@ char *roil_control_lua(roil_effect *e, const char *name) {
     find_and_get(e, name, &control);
     strbuf out = {0};
     if (c->kind == EFFECT_CONTROL_PARAM) {
-        add_param(&out, &control);
+        add_param(&out, &control, control.name);
         return out.text;
     }
     if (c->kind == EFFECT_CONTROL_PALETTE)

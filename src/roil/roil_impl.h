@@ -36,6 +36,9 @@ struct roil_effect {
 // Appends the value of a control as Lua. `whole`: of palettes and curves also what no setting can
 // change, such as the period. (roil/lua.c)
 void roil_add_lua(const roil_effect *e, const effect_control *c, bool whole, strbuf *out);
+// Appends "param { "NAME", ... }" with the control's value, range, unit and help.
+void roil_add_param_lua(const roil_effect *e, const effect_control *c, const char *name,
+                        strbuf *out);
 void roil_add_lua_key(const char *name, strbuf *out); // "name = ", in brackets where it must be
 graph_image roil_find_image(roil_effect *e, const char *name); // zero with a message
 // Tables from linear values to sRGB codes, indexed by the square root: entry i is the code of

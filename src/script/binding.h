@@ -129,7 +129,7 @@ const char *value_get_string(lua_State *L, int table, const char *who, const cha
 // Returns the key `name`; without one, the variable that the script assigns the call to; else
 // `who`.
 const char *value_name_or_variable(lua_State *L, int table, const char *who); // naming.c
-// Finds the name of the variable that the script assigns the call of `call` to. False: none.
+// Finds the local variable that the script assigns the call of `call` to. False: it is none.
 bool value_variable(lua_State *L, const char *call, char *out, size_t capacity);
 // Returns NULL when the key is absent.
 const scene_node *value_get_node(lua_State *L, int table, const char *who, const char *key);

@@ -27,8 +27,9 @@ static const char *skip_back(const char *text, const char *at) {
     return at;
 }
 
-// Returns the name that the value of the call at `at` is assigned to.
-static bool read_name(const char *text, const char *at, char *out, size_t capacity) {
+// Returns the name that the value of the call at `at` is assigned to, and whether it is a variable
+// of its own, and no key of a table.
+static bool read_name(const char *text, const char *at, char *out, size_t capacity, bool *local) {
     at = skip_back(text, at);
     if (at == text || *--at != '=') return false;
     if (at > text && strchr("=~<>", at[-1])) return false; // a comparison
@@ -43,6 +44,8 @@ static bool read_name(const char *text, const char *at, char *out, size_t capaci
     if (length == 0 || length >= capacity || isdigit((unsigned char)*at)) return false;
     memcpy(out, at, length);
     out[length] = '\0';
+    const char *before = skip_back(text, at);
+    *local = before - text >= 5 && strncmp(before - 5, "local", 5) == 0;
     return true;
 }
 
@@ -58,13 +61,13 @@ static const char *next_call(lua_State *L, const char *text, const char *line, c
     return call;
 }
 
-static bool name_by_source(lua_State *L, const char *who, char *out, size_t capacity) {
+static bool name_by_source(lua_State *L, const char *who, char *out, size_t capacity, bool *local) {
     size_t begin;
     const char *text = vm_caller_source(L, &begin);
     const char *line = text ? text + begin : NULL;
     for (int i = 0; line && i <= LINES_ABOVE; i++) {
         const char *call = next_call(L, text, line, who);
-        if (call) return read_name(text, call, out, capacity);
+        if (call) return read_name(text, call, out, capacity, local);
         if (line == text) break;
         for (line--; line > text && line[-1] != '\n';) line--;
     }
@@ -72,7 +75,8 @@ static bool name_by_source(lua_State *L, const char *who, char *out, size_t capa
 }
 
 bool value_variable(lua_State *L, const char *call, char *out, size_t capacity) {
-    return name_by_source(L, call, out, capacity);
+    bool local;
+    return name_by_source(L, call, out, capacity, &local) && local;
 }
 
 const char *value_name_or_variable(lua_State *L, int table, const char *who) {
@@ -80,6 +84,8 @@ const char *value_name_or_variable(lua_State *L, int table, const char *who) {
     if (given && !str_is_identifier(given))
         vm_error(L, "%s: name '%.64s' is not a name (letters, digits and _)", who, given);
     char name[64];
+    bool local;
     if (given) return given;
-    return name_by_source(L, who, name, sizeof name) ? arena_string(script_memory(L), name) : who;
+    return name_by_source(L, who, name, sizeof name, &local) ? arena_string(script_memory(L), name)
+                                                             : who;
 }

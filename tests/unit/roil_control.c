@@ -124,6 +124,10 @@ static void check_all_lua(roil_effect *e) {
         } else if (c.type == ROIL_PALETTE || c.type == ROIL_CURVE) {
             snprintf(before, sizeof before, "local %s = ", c.name);
             check_lua(e, c.name, before, "\nfx.output = geometry { }");
+        } else if (c.field) {
+            snprintf(before, sizeof before, "fx.output = geometry { } local %s = sphere { ",
+                     c.group);
+            check_lua(e, c.name, before, " }");
         } else if (strcmp(c.group, "march") == 0) {
             check_lua(e, c.name, "fx.output = march { density = sphere { }, ", " }");
         } else if (strcmp(c.name, "camera.eye") == 0) {

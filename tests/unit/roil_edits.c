@@ -195,7 +195,7 @@ static const char field_text[] = HEAD
 static void numbers_of_fields_are_controls(void **state) {
     (void)state;
     static const roil_setting moved[] = {
-        {"lumps.frequency", "4"}, {"density.position", "0,1,0"}, {"box.size", "2,3,4"}};
+        {"lumps.frequency", "4"}, {"sphere.position", "0,1,0"}, {"box.size", "2,3,4"}};
     roil_effect *e = roil_open(field_text, moved, COUNT_OF(moved));
     size_t index;
     roil_control c;
@@ -206,7 +206,7 @@ static void numbers_of_fields_are_controls(void **state) {
     assert_float_equal(c.initial[0], 1.5, 0);
     assert_string_equal(c.unit, "1/m");
     assert_string_equal(c.group, "lumps");
-    refused(roil_find_control(e, "emission.position", &index), "nothing is named"); // a field
+    refused(roil_find_control(e, "sphere_2.position", &index), "nothing is named"); // a field
     refused(roil_set(e, "lumps.octaves", "99"), "accepted: 1 to 12");
     need(roil_set(e, "lumps.octaves", "5"));
     need(roil_reset(e, "lumps.octaves"));
@@ -223,6 +223,32 @@ static void numbers_of_fields_are_controls(void **state) {
                         "local lumps = worley { frequency = 4, octaves = 3, seed = 1 }");
     assert_non_null(strstr(list[2].after, "sphere { position = {0, 1, 0}, radius = 2 }"));
     roil_edits_free(x);
+    roil_unload(e);
+}
+
+static void a_number_becomes_a_parameter(void **state) {
+    (void)state;
+    roil_effect *e = roil_open(field_text, &(roil_setting){"lumps.frequency", "4"}, 1);
+    roil_edit edit;
+    roil_edits *x = roil_edits_create_parameter(e, "lumps.frequency");
+    need(x);
+    need(roil_edits_write(x));
+    assert_int_equal(roil_edits_list(x, &edit, 1), 1);
+    assert_string_equal(edit.after,
+                        "local lumps = worley { frequency = param { \"lumps_frequency\", 4, min = "
+                        "1e-06, max = 1e+06, unit = \"1/m\", help = \"lattice cells a metre, of "
+                        "the first octave\" }, octaves = 3, seed = 1 }");
+    roil_edits_free(x);
+    x = roil_edits_create_parameter(e, "march.steps"); // which the script leaves open
+    assert_int_equal(roil_edits_list(x, &edit, 1), 1);
+    assert_non_null(strstr(edit.after, ", steps = param { \"march_steps\", 128, min = 1, max = "));
+    roil_edits_free(x);
+    roil_unload(e);
+    char path[PATH_CAP];
+    helper_path(path, "e.lua");
+    e = roil_load(helper_roil, path, &(roil_setting){"lumps_frequency", "3"}, 1);
+    need(e);
+    refused(roil_edits_create_parameter(e, "lumps_frequency"), "cannot become a parameter");
     roil_unload(e);
 }
 
@@ -293,6 +319,7 @@ int main(void) {
         cmocka_unit_test(a_turned_camera_is_an_orbit_again),
         cmocka_unit_test(what_is_computed_stays),
         cmocka_unit_test(numbers_of_fields_are_controls),
+        cmocka_unit_test(a_number_becomes_a_parameter),
         cmocka_unit_test(a_tile_follows_by_another_load),
         cmocka_unit_test(a_file_that_changed_is_left_alone),
         cmocka_unit_test(modules_of_the_effect_are_written),
