@@ -3,6 +3,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include <GLFW/glfw3.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -86,7 +87,19 @@ static void key_quit(live *l) {
     l->quit = true;
 }
 
+// Goes back to the time that a simulation has reached. False: none is behind.
+static bool stop_simulating(live *l) {
+    roil_simulation s;
+    if (!l->effect || !roil_get_simulation(l->effect, &s) || !s.waiting || !isfinite(s.reached))
+        return false;
+    l->time.playing = false;
+    key_seek(l, fmax(l->time.from, floor(l->time.first + s.reached * l->time.fps + 1e-6)));
+    live_notice(l, "Stopped at %.2f s", s.reached);
+    return true;
+}
+
 static void close_top(live *l) {
+    if (stop_simulating(l)) return;
     if (l->help)
         l->help = false;
     else if (l->writing)
@@ -154,7 +167,7 @@ static const live_key keys[] = {
     {GLFW_KEY_W, 0, "W", "write what was changed into the file", write_back_key},
     {GLFW_KEY_S, GLFW_MOD_CONTROL, "Ctrl+S", "save a preset", save_preset},
     {GLFW_KEY_F1, 0, "F1", "this help", help},
-    {GLFW_KEY_ESCAPE, 0, "Esc", "close what lies on top", close_top},
+    {GLFW_KEY_ESCAPE, 0, "Esc", "stop simulating; close what lies on top", close_top},
     {GLFW_KEY_Q, GLFW_MOD_CONTROL, "Ctrl+Q", "quit", key_quit},
 };
 

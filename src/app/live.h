@@ -62,6 +62,10 @@ typedef struct live {
     float pointer[2];       // position in the picture, 0 to 1 from its top left
     struct window *window;
     const struct app_device *device;
+    struct {
+        double since, from; // clock_seconds when a simulation fell behind (0: it is not), and
+                            // which time it had reached then
+    } behind;
     float slipped; // how far the pointer moved since the button went down (pixels)
 } live;
 

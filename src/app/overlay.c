@@ -10,6 +10,7 @@
 // Units; those of the style that a card's size follows from.
 static const float PADDING = 12, SPACING = 6, MONO_SIZE = 0.92f;
 static const float MARGIN = 24, CARD_WIDTH = 900, CARD_SHARE = 0.7f; // of the view's height
+static const double SURE = 1; // seconds after which a rate is told
 enum { MAX_TEXT = 4096 };
 
 static const char *message_of(const live *l) {
@@ -92,12 +93,30 @@ static const char *hint_of(const live *l) {
     return l->effect ? "The last good effect goes on." : NULL;
 }
 
+// Returns the seconds until a simulation that has come to `reached` comes to `time`, as fast as it
+// was since it fell behind; NAN: it is too early to tell.
+static double time_left(live *l, double reached, double time) {
+    double now = clock_seconds();
+    if (!(l->behind.since > 0) || reached < l->behind.from) {
+        l->behind.since = now;
+        l->behind.from = reached;
+    }
+    double passed = now - l->behind.since, done = reached - l->behind.from;
+    return passed > SURE && done > 0 ? (time - reached) * passed / done : (double)NAN;
+}
+
 // Prints how far a simulation is behind, or what is wrong with it. False: neither.
-static bool say_simulation(const live *l, char *out, size_t capacity) {
+static bool say_simulation(live *l, char *out, size_t capacity) {
     roil_simulation s;
     if (!l->effect || !roil_get_simulation(l->effect, &s)) return false;
     double time = timeline_seconds(&l->time);
-    if (s.waiting && isfinite(s.reached))
+    bool tells = s.waiting && isfinite(s.reached);
+    double left = tells ? time_left(l, s.reached, time) : (double)NAN;
+    if (!s.waiting) l->behind.since = 0;
+    if (tells && left >= 1)
+        snprintf(out, capacity, "Simulating: %.2f of %.2f s, %.0f s left; Esc stops", s.reached,
+                 time, left);
+    else if (tells)
         snprintf(out, capacity, "Simulating: %.2f of %.2f s", s.reached, time);
     else if (s.waiting)
         snprintf(out, capacity, "Simulating");

@@ -168,7 +168,7 @@ struct effect {
     size_t place_count, place_capacity;
     control **controls; // in the order of their list
     size_t control_count, control_capacity;
-    size_t controlled; // passes that have theirs
+    size_t controlled;  // passes that have theirs
     size_t ramp_count;  // palettes and curves among them
     size_t field_count; // fields whose numbers are among them
     bool tiled;         // effect_add_tile was called

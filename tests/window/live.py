@@ -250,6 +250,29 @@ class Panel(Case):
         plain.quit()
 
 
+AIR = """
+local fx = effect { name = "air", fps = 24, frames = 24000 }
+fx.camera = orbit { target = {0, 0, 0.8}, distance = 4 }
+local air = lbm { size = {16, 16, 16}, voxel_size = 0.1, speed = 2 }
+air:source { shape = sphere { position = {0, 0, 0.4}, radius = 0.3 }, density = 1 }
+fx.output = final { march { density = air.density * 30, steps = 8 } }.color
+return fx
+"""
+
+
+class Simulation(Case):
+    def test_a_long_way_can_be_left(self):
+        live = self.live(effect=AIR)
+        live.keys("End")
+        live.expect(r"live: drew frame 24000\b")
+        live.keys("Escape")
+        reached = float(live.expect(r"live: notice: Stopped at (\d+\.\d+) s").group(1))
+        self.assertLess(reached, 900)
+        frame = int(live.expect(r"live: drew frame (\d+)").group(1))
+        self.assertLess(abs(frame - reached * 24 - 1), 1.5)
+        live.quit()
+
+
 class Files(Case):
     def test_a_number_and_a_broken_file(self):
         live = self.live()
