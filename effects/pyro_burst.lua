@@ -53,8 +53,8 @@ local function burn(cells, guide)
   local heat = 1 - particle_age
   fire:source {
     particles = debris, shape = box { position = {0, 0, 3.5}, size = {9, 9, 7} }, -- no cells above are asked
-    radius = 0.13 * heat * smoothstep(4.3, 3, length(outwards)), rate = 80, velocity_factor = 0.2,
-    fuel = 0.1 * heat, temperature = 500 + 1000 * heat, soot = 0.0003 * heat,
+    radius = 0.1 * heat * smoothstep(4.3, 3, length(outwards)), rate = 80, velocity_factor = 0.2,
+    fuel = 0.06 * heat, temperature = 500 + 900 * heat, soot = 0.0003 * heat,
   }
   return fire
 end

@@ -12,10 +12,9 @@ SMALL_DEVICE = {"ROIL_SMALL_DEVICE": "1"}
 EFFECTS = os.path.join(SOURCE, "effects")
 LATEST, SIMULATED = 8, 2  # frames: later ones take long, with air that is simulated much longer
 # What a variant of its kernels would have to be made for, and what the line says.
-REFUSED = {
-    "barrel_chain.lua": ["pieces: ", "has 5 storage images in a stage; the device allows 4",
-                         "(maxPerStageDescriptorStorageImages)"],
-}
+PIECES = ["pieces: ", "has 5 storage images in a stage; the device allows 4",
+          "(maxPerStageDescriptorStorageImages)"]
+REFUSED = {"barrel_chain.lua": PIECES, "pyro_burst.lua": PIECES}
 # Their air takes 20 s of a processor to its first frame, with the kernels of smoke.lua and slices.lua:
 # drawn in long runs alone.
 SLOW = {"cigarette.lua", "creature.lua", "cube.lua", "cumulus.lua", "dye.lua", "figure.lua", "plumes.lua"}
