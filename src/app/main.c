@@ -1,6 +1,7 @@
 // roil COMMAND ...: finds the command and calls it.
 #include "app/app.h"
 #include "base/error.h"
+#include "base/file.h"
 #include "base/memory.h"
 #include "base/str.h"
 #include <errno.h>
@@ -12,6 +13,8 @@
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+
+enum { MOST_SOURCE = 1 << 20, MOST_SHOWN = 8 };
 
 static const struct {
     const char *name;
@@ -71,6 +74,36 @@ static void print_help(FILE *out) {
     fprintf(out, "\n`roil COMMAND --help` lists the options of a command.\n");
 }
 
+// Returns whether a Lua file declares an effect, and is no module or sweep.
+static bool declares_effect(const char *path) {
+    void *text;
+    size_t size;
+    if (!file_read(path, MOST_SOURCE, &text, &size)) return false;
+    bool found = false;
+    for (const char *at = text; !found && (at = strstr(at, "effect")); at++) {
+        const char *next = at + 6 + strspn(at + 6, " ");
+        found = *next == '{' || *next == '(';
+    }
+    mem_free(text);
+    return found;
+}
+
+// Says how to begin where there are effects in the current folder.
+static void print_effects(FILE *out) {
+    file_list here = {0};
+    const char *first = NULL;
+    size_t shown = 0;
+    if (!file_glob("*.lua", &here)) return;
+    for (size_t i = 0; i < here.count && shown < MOST_SHOWN; i++) {
+        if (!declares_effect(here.paths[i])) continue;
+        app_print(out, shown ? ", %s" : "\nEffects here: %s", here.paths[i]);
+        if (!first) first = here.paths[i];
+        shown++;
+    }
+    if (first) app_print(out, ". Begin with `roil live %s`.\n", first);
+    file_list_free(&here);
+}
+
 // Opens closed standard streams, so that files opened later do not become standard output.
 static bool open_streams(void) {
     int fd;
@@ -91,6 +124,7 @@ static int main_finish(int status) {
 static int main_run_command(int argc, char **argv) {
     if (argc < 2) {
         print_help(stderr);
+        print_effects(stderr);
         return APP_BAD_USAGE;
     }
     const char *wanted = argv[1];
@@ -110,6 +144,9 @@ static int main_run_command(int argc, char **argv) {
             return commands[i].run(argc - 1, (const char **)argv + 1);
         names[i] = commands[i].name;
     }
+    if (str_ends_with(wanted, ".lua"))
+        return app_fail(APP_BAD_USAGE, "'%s' is no command; `roil live %s` shows an effect", wanted,
+                        wanted);
     const char *near = str_nearest(wanted, names, COUNT_OF(names));
     if (near)
         return app_fail(APP_BAD_USAGE, "unknown command '%s'; did you mean '%s'?", wanted, near);

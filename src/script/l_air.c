@@ -7,6 +7,8 @@
 #include <math.h>
 #include <string.h>
 
+static const double SPARK_CELLS = 2.5, SPARK_HEAT = 1500, SPARK_SECONDS = 0.05; // radius; K
+
 enum { BODY_COST = 4 << 10 }; // bytes of host memory charged for a mesh in the air
 
 typedef struct air_type {
@@ -14,11 +16,12 @@ typedef struct air_type {
     field_grid *(*open)(pass *p, const pass_air_desc *desc);
     uint32_t least, multiple[3]; // of cells along an axis, and by axis
     double speed;                // default, m/s
+    bool burns;
 } air_type;
 
 static const air_type air_types[] = {
-    {"lbm", "lbm_source", "lbm_templates", pass_lbm_open, 4, {4, 1, 8}, 4},
-    {"pyro", "pyro_source", "pyro_templates", pass_pyro_open, 16, {8, 8, 8}, 12},
+    {"lbm", "lbm_source", "lbm_templates", pass_lbm_open, 4, {4, 1, 8}, 4, false},
+    {"pyro", "pyro_source", "pyro_templates", pass_pyro_open, 16, {8, 8, 8}, 12, true},
 };
 
 // Functions of a type have it as their first upvalue.
@@ -29,7 +32,7 @@ static const air_type *type_of(lua_State *L) {
 typedef struct air_object {
     pass *pass;
     field_grid *grid;
-    double time_step;
+    double time_step, voxel_size;
 } air_object;
 
 // ---- reading ----------------------------------------------------------------------------------
@@ -125,6 +128,7 @@ static int l_air(lua_State *L) {
     object->grid = type->open(p, &desc);
     if (!object->grid) script_raise(L);
     object->time_step = pass_air_time_step(p);
+    object->voxel_size = desc.voxel_size;
     effect_add_grid(s->effect, object->grid);
     effect_name_grid(s->effect, object->grid, variable);
     if (!pass_declare(p) || !pass_air_check(p)) script_raise(L);
@@ -202,6 +206,34 @@ static int l_templates(lua_State *L) {
     return 0;
 }
 
+// fire:spark { at = {0, 0, 0.2}, time = 0.1 } is a source of hot gas, in a ball and for a moment.
+static int l_spark(lua_State *L) {
+    const air_object *air = self(L, "spark", "at = {0, 0, 0.2}, time = 0.1");
+    static const char *const keys[] = {"at", "time", "radius", "temperature", "duration"};
+    float at[3] = {0};
+    value_check_keys(L, 2, "spark", keys, COUNT_OF(keys));
+    if (!value_get_vector(L, 2, "spark", "at", at))
+        vm_error(L, "spark: 'at' is missing: where it is, {x, y, z} in metres");
+    const double time = value_get_number(L, 2, "spark", "time", 0);
+    const float radius =
+        (float)value_get_number(L, 2, "spark", "radius", SPARK_CELLS * air->voxel_size);
+    arena *memory = script_memory(L);
+    vm_charge_memory(L, 3 * sizeof(field));
+    const field *args[FIELD_MAX_ARGS] = {field_constant(memory, 3, (float[4]){at[0], at[1], at[2]}),
+                                         field_constant(memory, 1, (float[4]){radius})};
+    lua_createtable(L, 0, 3);
+    field_push(L, field_make(memory, "sphere", args, NULL));
+    lua_setfield(L, -2, "shape");
+    value_put_number(L, "temperature", value_get_number(L, 2, "spark", "temperature", SPARK_HEAT));
+    value_put_numbers(
+        L, "during",
+        (float[2]){(float)time,
+                   (float)(time + value_get_number(L, 2, "spark", "duration", SPARK_SECONDS))},
+        2);
+    lua_replace(L, 2);
+    return l_source(L);
+}
+
 // Adds the mesh at the top of the stack.
 static void add_collider(lua_State *L, pass *air, voxels_rule rule) {
     const mesh_object *mesh = object_test(L, -1, "mesh");
@@ -240,8 +272,8 @@ static int l_collider(lua_State *L) {
 // What is said in another place than one may look for it.
 static const char *place_of(const char *name) {
     static const char *const places[][2] = {
-        {"spark", "hot gas for a while lights fuel: air:source { shape = ..., temperature = 1500, "
-                  "during = {0, 0.05} }"},
+        {"spark",
+         "in lbm nothing burns; of pyro it is fire:spark { at = {0, 0, 0.2}, time = 0.1 }"},
         {"force", "it is a key, of a field: { force = curl { ... }, ... }"},
         {"wind",
          "it is a key, of m/s: { wind = {2, 0, 0}, boundary = { left = \"inflow\" }, ... }"},
@@ -257,7 +289,8 @@ static const char *place_of(const char *name) {
 static void refuse_name(lua_State *L, const pass *air, const char *name) {
     if (place_of(name))
         vm_error(L, "%s: no method or field '%s'; %s", type_of(L)->name, name, place_of(name));
-    static const char *const own[] = {"source", "collider", "templates", "box", "time_step"};
+    static const char *const own[] = {"source",    "spark", "collider",
+                                      "templates", "box",   "time_step"};
     const char *near = str_nearest(name, own, COUNT_OF(own));
     size_t count;
     const pass_fluid_field *fields = pass_air_fields(air, &count);
@@ -278,6 +311,8 @@ static int l_index(lua_State *L) {
     const char *name = luaL_checkstring(L, 2);
     if (strcmp(name, "source") == 0) {
         push_method(L, l_source);
+    } else if (strcmp(name, "spark") == 0 && type_of(L)->burns) {
+        push_method(L, l_spark);
     } else if (strcmp(name, "collider") == 0) {
         push_method(L, l_collider);
     } else if (strcmp(name, "templates") == 0) {

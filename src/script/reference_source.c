@@ -188,6 +188,9 @@ const script_object reference_sources[] = {
         KEY("source { }", "{ shape = field, fuel = 2, temperature = 900, during = {0, 0.15} }",
             "where the gas is given fuel, heat, soot and speed: where the shape is above 0.5, within "
             "meshes, or near particles, as of `lbm`; `roil info passes pyro_source` lists the rest"),
+        KEY("spark { }", "{ at = {0, 0, 0.2}, time = 0.1 }",
+            "a ball of hot gas for a moment, which lights fuel: its radius is 2.5 cells, its "
+            "temperature 1500 K, its duration 0.05 s, if not given"),
         KEY("templates { }", "{ image \"templates/source.exr\", count = 40, size = {0.2, 0.6}, lifetime = {0.1, 0.5} }",
             "pictures of pressure or velocity that are put into the gas for a while, again and again: "
             "`count` at a time, 20 if not given; `size` (m) and `lifetime` (s) are one number, or "

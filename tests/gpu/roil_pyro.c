@@ -140,12 +140,38 @@ static void templates_show_in_the_divergence(void **state) {
     assert_true(brightest(shown[1]) > brightest(shown[0]) + 20);
 }
 
+#define COLD_FUEL                                                                                  \
+    "fire:source { shape = box { position = {0, 0, 0.8}, size = {1.2, 1.2, 0.8} }, fuel = 0.05, "  \
+    "during = {0, 0.01} }\n"
+
+// It is the source that it stands for, and lights what does not burn without it.
+static void a_spark_lights_fuel(void **state) {
+    static const char *const more[] = {
+        COLD_FUEL "fire:spark { at = {0, 0, 0.8}, time = 0.03, radius = 0.4 }",
+        COLD_FUEL "fire:source { shape = sphere { position = {0, 0, 0.8}, radius = 0.4 }, "
+                  "temperature = 1500, during = {0.03, 0.08} }",
+        COLD_FUEL "fire:spark { at = {0, 0, 0.8} }", COLD_FUEL};
+    picture shown[4];
+    double burnt[4];
+    for (int i = 0; i < 4; i++) {
+        roil_effect *e = open(*state, "", "during = {-2, -1}", more[i], "fire.temperature * 5e-4");
+        draw(e, 1, 6, shown[i]);
+        burnt[i] = readout(e, "fuel burnt");
+        roil_unload(e);
+    }
+    assert_memory_equal(shown[0], shown[1], sizeof *shown);
+    print_message("burnt %.3g, %.3g, %.3g, %.3g kg\n", burnt[0], burnt[1], burnt[2], burnt[3]);
+    assert_true(burnt[0] > 1e-3 && burnt[2] > 1.5e-4 && burnt[3] < 1e-6);
+}
+
 static void what_is_wrong_is_said(void **state) {
     static const struct {
         const char *keys, *source, *more, *shown, *message;
     } rows[] = {
         {"", "", "", "fire.sot", "no field 'sot'; did you mean 'soot'?"},
         {"", "", "", "fire.sorce", "no method or field 'sorce'; did you mean 'source'?"},
+        {"", "", "fire:spark { time = 1 }", "fire.soot", "spark: 'at' is missing"},
+        {"", "", "fire:spark { at = {0, 0, 1}, heat = 1 }", "fire.soot", "heat"},
         {"fuel = 'petroll'", "", "", "0", "petrol"},
         {"boundary = { left = 'periodic' }", "", "", "0", "'boundary_left' is periodic"},
         {"burn_tme = 1", "", "", "0", "did you mean 'burn_time'?"},
@@ -289,6 +315,7 @@ int main(void) {
         cmocka_unit_test(it_gives_fields_by_name),
         cmocka_unit_test(smoke_neither_glows_nor_burns),
         cmocka_unit_test(templates_show_in_the_divergence),
+        cmocka_unit_test(a_spark_lights_fuel),
         cmocka_unit_test(what_is_wrong_is_said),
         cmocka_unit_test(it_is_pushed_by_a_field),
         cmocka_unit_test(a_coarser_run_guides_it),

@@ -38,6 +38,7 @@ class Usage(Case):
 
     def test_unknown_command_gets_a_suggestion(self):
         self.fails(2, ["unknown command 'rendr'", "did you mean 'render'?"], "rendr")
+        self.fails(2, ["'puff.lua' is no command; `roil live puff.lua` shows an effect"], "puff.lua")
         self.fails(2, ["unknown command 'bake'",
                        "accepted: render, live, check, info, export, bench, tune, compare"], "bake")
 
