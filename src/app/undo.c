@@ -34,6 +34,7 @@ static undo_step *add_step(undo *u) {
         memmove(u->steps, u->steps + 1, (UNDO_STEPS - 1) * sizeof *u->steps);
         u->count--;
     }
+    MEM_RESERVE(u->steps, u->count + 1, u->capacity);
     u->done = u->count + 1;
     u->open = true;
     undo_step *s = &u->steps[u->count++];
@@ -132,5 +133,6 @@ undo_step *undo_again(undo *u) {
 
 void undo_free(undo *u) {
     for (size_t i = 0; i < u->count; i++) free_step(&u->steps[i]);
+    mem_free(u->steps);
     *u = (undo){0};
 }

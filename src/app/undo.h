@@ -3,7 +3,7 @@
 #pragma once
 #include "roil.h"
 
-enum { UNDO_STEPS = 500 }; // that are kept; the oldest are forgotten
+enum { UNDO_STEPS = 10000 }; // that are kept; the oldest are forgotten
 
 typedef struct undo_value {
     char *name;
@@ -18,11 +18,11 @@ typedef struct undo_step {
 } undo_step;
 
 typedef struct undo { // zero at first
-    undo_step steps[UNDO_STEPS];
-    size_t count;     // steps that are kept
-    size_t done;      // of these, the first ones that hold; the others were undone
-    bool open;        // what comes next belongs to the last step
-    double last_note; // clock_seconds
+    undo_step *steps;
+    size_t count, capacity; // steps that are kept
+    size_t done;            // of these, the first ones that hold; the others were undone
+    bool open;              // what comes next belongs to the last step
+    double last_note;       // clock_seconds
 } undo;
 
 // Call it once a frame: what comes next belongs to the last step while a button or key is held.
