@@ -80,56 +80,59 @@ static bool take_step(live *l, const undo_step *step, bool back) {
         live_notice(l, "%s", roil_error());
         return false;
     }
+    l->awaits_file = step->written != NULL;
     l->restored = step->written && back ? (size_t)(step - l->undo.steps) + 1 : 0;
     return true;
 }
 
-static bool step_back(live *l) {
-    undo_step *step = l->effect ? undo_back(&l->undo) : NULL;
+static bool move_step(live *l, bool back) {
+    undo_step *step = back ? undo_back(&l->undo) : undo_again(&l->undo);
     if (!step) return false;
-    if (!take_step(l, step, true)) return undo_again(&l->undo), false;
-    log_write(LOG_DEBUG, "live: undid %s", step->label);
-    live_notice(l, "Undid %s", step->label);
+    if (!take_step(l, step, back)) {
+        if (back)
+            undo_again(&l->undo);
+        else
+            undo_back(&l->undo);
+        return false;
+    }
+    log_write(LOG_DEBUG, "live: %s %s", back ? "undid" : "redid", step->label);
+    live_notice(l, back ? "Undid %s" : "Did %s again", step->label);
     return true;
 }
 
-static bool step_on(live *l) {
-    undo_step *step = l->effect ? undo_again(&l->undo) : NULL;
-    if (!step) return false;
-    if (!take_step(l, step, false)) return undo_back(&l->undo), false;
-    log_write(LOG_DEBUG, "live: redid %s", step->label);
-    live_notice(l, "Did %s again", step->label);
-    return true;
+// Takes steps until `done` hold. After one that wrote files, the rest waits until they are loaded.
+static void go_to(live *l, size_t done) {
+    l->goal = done;
+    while (l->effect && !l->awaits_file && l->undo.done != l->goal)
+        if (!move_step(l, l->undo.done > l->goal)) l->goal = l->undo.done;
 }
 
 void live_undo(live *l) {
-    if (l->undo.done == 0)
+    size_t from = l->awaits_file ? l->goal : l->undo.done;
+    if (from == 0)
         live_notice(l, "Nothing to undo");
     else
-        step_back(l);
+        go_to(l, from - 1);
 }
 
 void live_redo(live *l) {
-    if (l->undo.done == l->undo.count)
+    size_t from = l->awaits_file ? l->goal : l->undo.done;
+    if (from >= l->undo.count)
         live_notice(l, "Nothing to do again");
     else
-        step_on(l);
+        go_to(l, from + 1);
 }
 
 void changes_take_over(live *l) {
     size_t step = l->restored;
+    bool awaited = l->awaits_file;
     l->restored = 0;
+    l->awaits_file = false;
     if (step > 0 && step <= l->undo.count) set_values(l, &l->undo.steps[step - 1], true);
+    if (awaited && l->goal <= l->undo.count) go_to(l, l->goal);
 }
 
 // ---- list ---------------------------------------------------------------------------------------
-
-static void go_to(live *l, size_t done) {
-    while (l->undo.done > done && step_back(l)) {
-    }
-    while (l->undo.done < done && step_on(l)) {
-    }
-}
 
 // The newest is on top; what was undone is dim.
 void changes_draw(live *l) {
@@ -148,5 +151,5 @@ void changes_draw(live *l) {
         if (ui_row("as it was at first", l->undo.done == 0, false)) chosen = 0;
     }
     ui_window_end();
-    go_to(l, chosen);
+    if (chosen != l->undo.done) go_to(l, chosen);
 }

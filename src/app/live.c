@@ -82,7 +82,6 @@ static void take_over(live *l, loop *p) {
     if (!first) l->held = false; // a file has changed
     live_redraw(l);
     p->drawn = p->drawn && !first;
-    changes_take_over(l);
     log_write(LOG_DEBUG, "live: took over, %.0f ms after the change",
               roil_live_counts(l->follow).last * 1000);
 }
@@ -93,6 +92,7 @@ static void loop_follow_files(live *l, loop *p) {
     uint64_t reloads = roil_live_counts(l->follow).reloads;
     if (message) log_write(LOG_DEBUG, "live: %s", message);
     if (reloads != p->reloads) take_over(l, p);
+    changes_take_over(l); // also of a file that failed: nothing waits for it
     p->reloads = reloads;
     restart_arm(l);
 }

@@ -55,6 +55,8 @@ typedef struct live {
     panel *panel;
     undo undo;
     bool undo_list;         // is shown
+    bool awaits_file;       // a step wrote files, which are not loaded yet; then on to `goal`
+    size_t goal;            // steps that shall hold
     size_t restored;        // step, from 1, whose values are set once its file is loaded; 0: none
     write_back *writing;    // what the user is asked to write; NULL: nothing
     uint32_t width, height; // of the effect's picture, pixels

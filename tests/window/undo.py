@@ -111,6 +111,12 @@ class Undo(Case):
         live.expect("live: redid written: puff.lua")
         live.expect("live: took over")
         self.assertEqual(self.read("puff.lua"), text)
+        live.keys("u")
+        live.click_on("as it was at first")  # back over the file and all that came before
+        live.expect("live: undid written: puff.lua")
+        live.expect("live: undid thickness")
+        live.wait_until(lambda: "thickness/reset" not in live.widgets(), "the script's value")
+        self.assertEqual(self.read("puff.lua"), PUFF)
         live.quit()
 
     def test_one_value_alone(self):
