@@ -112,8 +112,11 @@ class Undo(Case):
         live.expect("live: took over")
         self.assertEqual(self.read("puff.lua"), text)
         live.keys("u")
-        live.click_on("as it was at first")  # back over the file and all that came before
+        live.click_on("0/thickness")  # two steps at once: the second waits until the file is loaded
         live.expect("live: undid written: puff.lua")
+        live.expect("live: undid camera")
+        live.widget("thickness/reset")  # that alone is set again
+        live.click_on("as it was at first")
         live.expect("live: undid thickness")
         live.wait_until(lambda: "thickness/reset" not in live.widgets(), "the script's value")
         self.assertEqual(self.read("puff.lua"), PUFF)
