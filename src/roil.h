@@ -225,7 +225,8 @@ typedef struct roil_counter { // a counter of a pass in the last frame (roil_des
     char pass[64], name[64];
     uint64_t value;
 } roil_counter;
-// Both wait for the last frame. Parts of a pass that have one name are added up.
+// Both wait for the last frame. Parts of a pass that have one name are added up; times have what
+// was simulated for the frame in submissions before it, except in a live effect.
 size_t roil_times(roil_effect *e, roil_time *out, size_t capacity);
 size_t roil_counters(roil_effect *e, roil_counter *out, size_t capacity);
 

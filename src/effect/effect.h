@@ -292,6 +292,9 @@ typedef struct effect_simulation {
     const char *where;
 } effect_simulation;
 bool effect_get_simulation(const effect *e, effect_simulation *out); // false: nothing simulates
+// GPU times by label, at most `capacity`, of what was simulated for the frame rendered last before
+// it was recorded. Waits for that. 0 in an effect that never waits.
+size_t effect_times_ahead(effect *e, gpu_pass_time *out, size_t capacity);
 void effect_restart(effect *e); // simulations start from the beginning with the next frame
 // Save and load the state of all simulations, between frames, after effect_allocate. When a state
 // cannot be loaded, they start from the beginning. `frame` is the one that was rendered last.

@@ -148,6 +148,10 @@ struct effect {
     double updated;     // frame that `update` ran for last; NAN: none
     double rendered_at; // clock_seconds at its end
     bool behind;        // simulations have not reached the frame rendered last
+    uint64_t
+        ahead; // the submission simulated last before the frame; 0: none, or its times are known
+    gpu_pass_time *ahead_times; // of those before it, by label
+    size_t ahead_count, ahead_capacity;
     bool (*progress)(void *user, double done, double whole); // effect_on_progress
     void *progress_user;
     shared_mat4 clip, last_clip; // world to clip of the frame being recorded, of the one before

@@ -6,9 +6,11 @@
 // and continues with the next picture.
 #include "base/clock.h"
 #include "base/error.h"
+#include "base/memory.h"
 #include "effect/effect_impl.h"
 #include "scene/bvh.h"
 #include <math.h>
+#include <string.h>
 
 // Limits of the time that a live window waits, seconds. Within these it waits as long as the rest
 // of a frame takes.
@@ -86,14 +88,44 @@ static double next_frame(const effect *e, double frame) {
     return fmin(fmax(next, (double)e->first), frame);
 }
 
+// Adds the times of the submission simulated last to those of the frame, which waits for it.
+static void collect_times(effect *e) {
+    if (!e->ahead) return;
+    gpu_pass_time *times = mem_alloc(GPU_MAX_PASSES * sizeof *times);
+    size_t count = gpu_frame_times(e->device, e->ahead, times, GPU_MAX_PASSES);
+    e->ahead = 0;
+    for (size_t i = 0; i < count; i++) {
+        size_t k = 0;
+        while (k < e->ahead_count && strcmp(e->ahead_times[k].label, times[i].label) != 0) k++;
+        if (k < e->ahead_count) {
+            e->ahead_times[k].milliseconds += times[i].milliseconds;
+            continue;
+        }
+        MEM_RESERVE(e->ahead_times, e->ahead_count + 1, e->ahead_capacity);
+        e->ahead_times[e->ahead_count++] = times[i];
+    }
+    mem_free(times);
+}
+
+size_t effect_times_ahead(effect *e, gpu_pass_time *out, size_t capacity) {
+    collect_times(e);
+    for (size_t i = 0; i < e->ahead_count && i < capacity; i++) out[i] = e->ahead_times[i];
+    return e->ahead_count < capacity ? e->ahead_count : capacity;
+}
+
+// A live window does not wait, and its times are those of the picture alone.
 static bool run_frame(effect *e, double frame, bool again) {
     if (!gpu_frame_begin(e->device)) return false;
+    uint64_t number = gpu_frame_open(e->device);
     e->host.ahead = true;
     bool done = effect_evaluate(e, frame, e->device, again) &&
                 scene_bvh_update(e->host.bvh, e->device, &e->context) &&
                 graph_execute_simulation(e->graph, e->device);
     e->host.ahead = false;
     if (!gpu_frame_end(e->device)) done = false;
+    if (e->never_waits) return done;
+    collect_times(e); // of the one before: this one is at work meanwhile
+    e->ahead = done ? number : 0;
     return done;
 }
 
@@ -121,6 +153,7 @@ static bool simulate_until(effect *e, double frame, bool *again) {
 
 bool effect_simulate(effect *e, double frame, bool *again) {
     *again = e->behind = e->host.hold = false;
+    e->ahead = e->ahead_count = 0;
     if (!graph_simulates(e->graph)) return true;
     e->host.brief = e->never_waits;
     turn_back(e, frame);

@@ -28,6 +28,7 @@ typedef struct gpu_profile {
 
     // ---- what one submit may hold ----
     double lattice_updates;      // cells times steps
+    double burning_cost;         // updates of a lattice that one of a cell of burning gas is worth
     double least_updates;        // what the smallest step counts for
     double brief_updates;        // in a live picture: the part that is left, 1 / this
     double particle_moves;       // particles times steps

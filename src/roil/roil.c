@@ -357,9 +357,10 @@ static size_t add_up(gpu_pass_time *times, size_t count) {
 }
 
 size_t roil_times(roil_effect *e, roil_time *out, size_t capacity) {
-    gpu_pass_time *times = mem_alloc(GPU_MAX_PASSES * sizeof *times);
-    size_t count =
-        add_up(times, gpu_frame_times(e->owner->device, e->frame, times, GPU_MAX_PASSES));
+    gpu_pass_time *times = mem_alloc(2 * GPU_MAX_PASSES * sizeof *times);
+    size_t count = gpu_frame_times(e->owner->device, e->frame, times, GPU_MAX_PASSES);
+    if (count) count += effect_times_ahead(e->effect, times + count, GPU_MAX_PASSES);
+    count = add_up(times, count);
     for (size_t i = 0; i < count && i < capacity; i++) {
         str_copy(out[i].pass, sizeof out[i].pass, times[i].label);
         out[i].milliseconds = times[i].milliseconds;
@@ -371,12 +372,13 @@ size_t roil_times(roil_effect *e, roil_time *out, size_t capacity) {
 // Returns millions of units of work per second in the last frame: `work` divided by the time of the
 // pass's parts, without that of its grids.
 static double rate_of(roil_effect *e, const pass *p, double work) {
-    roil_time times[GPU_MAX_PASSES];
-    size_t count = roil_times(e, times, GPU_MAX_PASSES), length = strlen(pass_label(p));
+    gpu_pass_time times[GPU_MAX_PASSES];
+    size_t count = gpu_frame_times(e->owner->device, e->frame, times, GPU_MAX_PASSES);
+    size_t length = strlen(pass_label(p));
     double sum = 0;
-    for (size_t i = 0; i < count && i < GPU_MAX_PASSES; i++) {
-        const char *part = times[i].pass + length;
-        if (strncmp(times[i].pass, pass_label(p), length) == 0 && part[0] == '.' &&
+    for (size_t i = 0; i < count; i++) {
+        const char *part = times[i].label + length;
+        if (strncmp(times[i].label, pass_label(p), length) == 0 && part[0] == '.' &&
             strcmp(part, ".fields") != 0)
             sum += times[i].milliseconds;
     }

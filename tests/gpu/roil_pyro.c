@@ -243,6 +243,27 @@ static void a_jump_is_as_good_as_every_frame(void **state) {
     assert_memory_not_equal(each[0], each[1], sizeof jump);
 }
 
+static double step_time(roil_effect *e) {
+    roil_time times[64];
+    const size_t count = roil_times(e, times, 64);
+    for (size_t i = 0; i < count && i < 64; i++)
+        if (strcmp(times[i].pass, "pyro.step") == 0) return times[i].milliseconds;
+    fail_msg("no time of steps");
+    return 0;
+}
+
+// 75 steps, each frame's in a submission of its own; then one or two.
+static void times_are_of_all_that_a_frame_simulates(void **state) {
+    picture p;
+    roil_effect *e = open(*state, "", BRIEF, "", HEAT);
+    draw(e, 50, 50, p);
+    const double jump = step_time(e);
+    draw(e, 51, 51, p);
+    const double next = step_time(e);
+    if (!(jump > 8 * next)) fail_msg("%g ms, then %g", jump, next);
+    roil_unload(e);
+}
+
 // What is in the box after a source has given is what it gave, burnt or not.
 static void a_source_gives_while_it_is_told_to(void **state) {
     picture p;
@@ -320,6 +341,7 @@ int main(void) {
         cmocka_unit_test(it_is_pushed_by_a_field),
         cmocka_unit_test(a_coarser_run_guides_it),
         cmocka_unit_test(a_jump_is_as_good_as_every_frame),
+        cmocka_unit_test(times_are_of_all_that_a_frame_simulates),
         cmocka_unit_test(a_source_gives_while_it_is_told_to),
         cmocka_unit_test(a_restored_run_is_the_one_that_never_stopped),
         cmocka_unit_test(a_reload_goes_on_with_the_gas),

@@ -79,7 +79,7 @@ typedef struct air_kind {
     size_t periodic;              // the word of a face that is
     bool (*check)(const pass *p); // whether its other options go together; may be NULL
     int64_t late;                 // of its clock (pass/steps.h)
-    double dearer;                // updates of a lattice that one of a cell is worth
+    bool burns;                   // a step costs as much as one of burning gas
     const int *source_fields;     // names of what sources may give
     size_t source_field_count;
     uint64_t (*steps)(const air *a);           // that the solver has done

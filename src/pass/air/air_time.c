@@ -71,9 +71,10 @@ void air_restart(pass *p) {
 
 int64_t air_most(const pass *p) {
     const air *a = air_of(p);
+    const gpu_profile *device = gpu_get_profile(p->host->device);
     double cells = (double)a->desc.size[0] * a->desc.size[1] * a->desc.size[2];
-    return pass_steps_most(cells * a->kind->dearer, gpu_get_profile(p->host->device),
-                           p->host->brief);
+    double cost = a->kind->burns ? device->burning_cost : 1;
+    return pass_steps_most(cells * cost, device, p->host->brief);
 }
 
 // `apart`: what a step consists of is timed by itself.

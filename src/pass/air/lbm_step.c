@@ -144,7 +144,6 @@ const air_kind lbm_kind = {
     .periodic = LBM_PERIODIC,
     .check = lbm_air_check_options,
     .late = 1,
-    .dearer = 1,
     .source_fields = given,
     .source_field_count = COUNT_OF(given),
     .steps = lbm_air_steps,
