@@ -10,6 +10,7 @@ enum {
     PYRO_CELLS_A_GROUP = 256,  // of kernels that sum
     PYRO_MAX_LEVELS = 10,
     PYRO_COARSEST = 8192, // cells at most of the level that one group solves
+    PYRO_FEW = 1024,      // of that level, where it could still be halved along some axes
 };
 
 typedef enum pyro_memory {

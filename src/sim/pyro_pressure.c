@@ -18,7 +18,7 @@ static float coarsest_relaxation(const pyro_level *l) {
 // ---- levels -----------------------------------------------------------------------------------
 
 // Axes of an even number of cells are halved, down to 2. Where some are odd, the others go on alone
-// only until one group can solve what is left.
+// only until what is left is few, of which one group soon makes all the sweeps.
 static bool level_coarsen(const pyro_level *l, pyro_level *next) {
     bool any = false;
     const uint64_t cells = (uint64_t)l->size[0] * l->size[1] * l->size[2];
@@ -31,7 +31,7 @@ static bool level_coarsen(const pyro_level *l, pyro_level *next) {
         next->weights[i] = halves ? l->weights[i] / 4 : l->weights[i];
         any |= halves;
     }
-    return any && !(odd > 0 && cells <= PYRO_COARSEST);
+    return any && !(odd > 0 && cells <= PYRO_FEW);
 }
 
 bool pyro_find_levels(pyro *p) {
@@ -112,12 +112,19 @@ static kernel *use_level(pyro *p, pyro_kernel finest, pyro_kernel coarse, uint32
     return k;
 }
 
+// A level that the next one has halved along some axes only is smoothed twice: errors along the
+// others are as fine there.
+static int level_sweeps(const pyro_level *l) {
+    return l->coarser[0] * l->coarser[1] * l->coarser[2] < 8 ? 2 : 1;
+}
+
 static bool pressure_smooth(pyro *p, gpu *g, uint32_t level) {
     pyro_stage(p, g, level == 0 ? "pyro.smooth" : "pyro.coarse");
     const uint32_t *size = p->levels[level].size;
-    for (int colour = 0; colour < 2; colour++) {
+    const int halves = 2 * level_sweeps(&p->levels[level]);
+    for (int half = 0; half < halves; half++) {
         kernel *k = use_level(p, PYRO_K_SMOOTH_FINEST, PYRO_K_SMOOTH, level);
-        kernel_set_int(k, N_colour, colour);
+        kernel_set_int(k, N_colour, half % 2);
         if (!kernel_run(k, g, (size[0] + 1) / 2, size[1], size[2])) return false;
     }
     return true;
