@@ -33,10 +33,11 @@ local debris = particles {
 }
 
 -- A box of 9 x 9 x 12.6 m. Two cores bear the draft, a graphics card the film.
-local sizes = { draft = {80, 80, 112}, shot = {160, 160, 224}, film = {256, 256, 352} }
-local function burn(cells, guide)
+local sizes = { draft = {80, 80, 112}, shot = {160, 160, 224}, film = {224, 224, 320} }
+local speeds = { draft = 20, shot = 14, film = 10 } -- the finer the cells, the more of them gas may cross in a step
+local function burn(cells, speed, guide)
   local fire = pyro {
-    size = cells, voxel_size = 9 / cells[1], fuel = "petrol", speed = 20, velocity_cells = "half", density = "variable",
+    size = cells, voxel_size = 9 / cells[1], fuel = "petrol", speed = speed, velocity_cells = "half", density = "variable",
     burn_time = 0.03, cooling = 2200, soot_burn_time = 2, vorticity = 6, guide = guide,
   }
   fire:source {
@@ -58,8 +59,8 @@ local function burn(cells, guide)
   }
   return fire
 end
-local draft = guided:get() and quality:get() ~= "draft" and burn(sizes.draft)
-local fire = burn(sizes[quality:get()], draft and draft.velocity or nil)
+local draft = guided:get() and quality:get() ~= "draft" and burn(sizes.draft, speeds.draft)
+local fire = burn(sizes[quality:get()], speeds[quality:get()], draft and draft.velocity or nil)
 
 fx.camera = orbit { target = {0, 0, 4}, distance = 18, yaw = 25, pitch = 4, fov = 38 }
 fx.sun    = sun { azimuth = 215, elevation = 30, color = {1, 0.92, 0.8}, strength = 6 }
