@@ -1,5 +1,6 @@
-// roil: a runtime for volumetric effects. This header and roil_slices.h, which it includes, are the
-// whole public interface of libroil. The program `roil` is built on it and uses nothing else.
+// roil: a runtime for volumetric effects. This header and those that it includes, roil_slices.h and
+// roil_space.h, are the whole public interface of libroil. The program `roil` is built on it and
+// uses nothing else.
 //
 //   roil *r = roil_create(&(roil_desc){0});
 //   roil_effect *e = r ? roil_load(r, "effects/explosion.lua", NULL, 0) : NULL;
@@ -328,7 +329,8 @@ typedef struct roil_control { // strings live as long as the effect
 } roil_control;
 
 // Controls are listed in this order: parameters as declared; palettes and curves; camera, sun, sky,
-// lights and materials; numbers of fields; then the uniforms and options of each pass.
+// lights, materials, nodes and meshes; numbers of fields; places of volumes; then the uniforms and
+// options of each pass.
 size_t roil_control_count(const roil_effect *e);
 void roil_get_control(roil_effect *e, size_t index, roil_control *out); // index below the count
 // Finds a control by name. Returns false with a message, which suggests a similar name.
@@ -651,3 +653,4 @@ void roil_free(void *text);             // NULL is allowed
 #endif
 
 #include "roil_slices.h" // flows in slices, shown and changed
+#include "roil_space.h"  // where things are, and what moves them

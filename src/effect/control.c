@@ -25,7 +25,9 @@ static void print(const effect *e, const control *c, strbuf *out) {
     case EFFECT_CONTROL_SCENE:
     case EFFECT_CONTROL_LIGHT:
     case EFFECT_CONTROL_MATERIAL:
+    case EFFECT_CONTROL_PLACE:
     case EFFECT_CONTROL_FIELD:
+    case EFFECT_CONTROL_LOADED:
     case EFFECT_CONTROL_UNIFORM:
         field_control_print(e, c, out);
         break;
@@ -169,7 +171,8 @@ static void note_moved(effect *e, control *c, const char *text) {
 }
 
 static bool is_structure(const control *c) {
-    return c->face.kind == EFFECT_CONTROL_OPTION || c->face.kind == EFFECT_CONTROL_SCALE;
+    return c->face.kind == EFFECT_CONTROL_OPTION || c->face.kind == EFFECT_CONTROL_SCALE ||
+           c->face.kind == EFFECT_CONTROL_LOADED;
 }
 
 static bool set(effect *e, control *c, const char *text) {
@@ -182,7 +185,9 @@ static bool set(effect *e, control *c, const char *text) {
     case EFFECT_CONTROL_SCENE:
     case EFFECT_CONTROL_LIGHT:
     case EFFECT_CONTROL_MATERIAL:
+    case EFFECT_CONTROL_PLACE:
     case EFFECT_CONTROL_FIELD:
+    case EFFECT_CONTROL_LOADED:
     case EFFECT_CONTROL_UNIFORM:
         return field_control_set(e, c, text);
     case EFFECT_CONTROL_EVENTS:
@@ -222,6 +227,7 @@ void effect_reset_control(effect *e, control *c) {
     case EFFECT_CONTROL_SCENE:
     case EFFECT_CONTROL_LIGHT:
     case EFFECT_CONTROL_MATERIAL:
+    case EFFECT_CONTROL_PLACE:
     case EFFECT_CONTROL_UNIFORM:
         *c->slot = c->original;
         break;
@@ -231,7 +237,8 @@ void effect_reset_control(effect *e, control *c) {
     case EFFECT_CONTROL_EVENTS:
         events_control_reset(e);
         break;
-    case EFFECT_CONTROL_OPTION: // structure
+    case EFFECT_CONTROL_LOADED: // structure
+    case EFFECT_CONTROL_OPTION:
     case EFFECT_CONTROL_SCALE:
         break;
     }

@@ -7,7 +7,7 @@
 
 const field *effect_control_field(const effect *e, const effect_control *c) {
     const control *own = (const control *)c;
-    if (c->kind == EFFECT_CONTROL_FIELD) return own->nodes[0];
+    if (own->nodes[0] && !own->slot) return own->nodes[0];
     if (!own->slot || *own->slot || c->kind != EFFECT_CONTROL_UNIFORM)
         return own->slot ? *own->slot : NULL;
     const value_desc *declared;
@@ -44,23 +44,47 @@ static bool is_taken(effect *e, const char *name) {
     return false;
 }
 
-bool effect_add_field(effect *e, const char *name, const field_kind *kind, field *const *values) {
-    if (!effect_has_room_for_field(e)) return true;
-    e->field_count++;
+// Names a group of controls after what it belongs to, with a number where that is taken.
+static const char *free_group(effect *e, const char *name) {
     const char *group = arena_string(&e->memory, name);
     for (int i = 2; is_taken(e, group); i++) group = arena_format(&e->memory, "%s_%d", name, i);
+    return group;
+}
+
+// A constant in the place of numbers, of which settings change the value.
+static control control_of_constant(effect *e, effect_control_kind kind, field *value) {
+    return (control){
+        .face.kind = kind,
+        .nodes = {value},
+        .original = field_constant(&e->memory, value->components, value->value),
+    };
+}
+
+bool effect_add_field(effect *e, const char *name, const field *node, field *const *values) {
+    const field_kind *kind = node->kind;
+    if (!effect_has_room_for_field(e)) return true;
+    e->field_count++;
+    const char *group = free_group(e, name);
+    effect_add_shape(e, group, node);
     for (size_t i = 0; i < FIELD_MAX_ARGS && kind->args[i].desc.name; i++) {
         if (!values[i]) continue;
         value_desc *desc = arena_copy(&e->memory, &kind->args[i].desc, sizeof *desc);
         desc->components = values[i]->components;
-        control *c =
-            effect_add_member(e, group, desc,
-                              (control){.face = {.kind = EFFECT_CONTROL_FIELD},
-                                        .nodes = {values[i]},
-                                        .original = field_constant(
-                                            &e->memory, values[i]->components, values[i]->value)});
+        control *c = effect_add_member(e, group, desc,
+                                       control_of_constant(e, EFFECT_CONTROL_FIELD, values[i]));
         if (!effect_apply_to(e, c)) return false;
     }
+    return true;
+}
+
+bool effect_add_loaded(effect *e, const char *group, const value_desc *desc, const void *made,
+                       float *value) {
+    field *node = field_constant(&e->memory, desc->components, value);
+    control own = control_of_constant(e, EFFECT_CONTROL_LOADED, node);
+    own.owner = made;
+    if (!effect_apply_to(e, effect_add_member(e, arena_string(&e->memory, group), desc, own)))
+        return false;
+    memcpy(value, node->value, (size_t)desc->components * sizeof *value);
     return true;
 }
 
@@ -70,7 +94,7 @@ bool field_control_set(effect *e, control *c, const char *text) {
     const value_desc *desc = c->face.desc;
     float value[4];
     if (!value_parse(desc, c->face.name, text, value)) return false;
-    if (c->face.kind == EFFECT_CONTROL_FIELD) { // programs and the host read it in each frame
+    if (!c->slot) { // programs and the host read it in each frame, or when it is loaded
         memcpy(c->nodes[0]->value, value, sizeof value);
         return true;
     }

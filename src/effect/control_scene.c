@@ -1,6 +1,6 @@
-// Which controls the scene has: those of camera, sun and sky, of lights and of materials. A camera
-// is turned by what it was made of: one that circles its target by distance, yaw and pitch, and any
-// by "camera.eye", which makes it stand somewhere.
+// Which controls the scene has: those of camera, sun and sky, of lights, materials, meshes and
+// nodes. A camera is turned by what it was made of: one that circles its target by distance, yaw
+// and pitch, and any by "camera.eye", which makes it stand somewhere.
 #include "base/error.h"
 #include "base/memory.h"
 #include "effect/effect_impl.h"
@@ -46,7 +46,7 @@ static bool add_values(effect *e, effect_control_kind kind, const char *group,
     for (const scene_value *v = values; v->desc.name; v++) {
         const field **slot = scene_slot(structure, v);
         if (s ? !scene_has(s, v->need) : !*slot) continue;
-        control own = {.face.kind = kind, .slot = slot, .original = *slot};
+        control own = {.face.kind = kind, .slot = slot, .original = *slot, .owner = structure};
         if (!effect_apply_to(e, effect_add_member(e, group, &v->desc, own))) return false;
     }
     return true;
@@ -67,6 +67,22 @@ static bool add_named(effect *e, effect_control_kind kind, const char **name,
     return add_values(e, kind, *name, values, structure, NULL);
 }
 
+// Of meshes and nodes, which may be many, the first ones.
+static bool add_places(effect *e) {
+    size_t added = 0;
+    for (size_t i = 0; i < e->node_count && added < EFFECT_MAX_PLACES; i++, added++)
+        if (!add_named(e, EFFECT_CONTROL_PLACE, &e->nodes[i]->name, scene_node_values, e->nodes[i]))
+            return false;
+    for (size_t i = 0; i < e->mesh_count && added < EFFECT_MAX_PLACES; i++) {
+        scene_mesh *mesh = e->meshes[i];
+        if (mesh->repeated) continue;
+        added++;
+        if (!add_named(e, EFFECT_CONTROL_PLACE, &mesh->called, scene_mesh_values, mesh))
+            return false;
+    }
+    return true;
+}
+
 bool scene_control_add_all(effect *e) {
     if (effect_control_of(e, "camera.eye")) return true;
     const scene s = e->scene;
@@ -82,5 +98,5 @@ bool scene_control_add_all(effect *e) {
         if (!add_named(e, EFFECT_CONTROL_MATERIAL, &e->materials[i]->name, scene_material_values,
                        e->materials[i]))
             return false;
-    return true;
+    return add_places(e);
 }

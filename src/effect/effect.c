@@ -107,6 +107,8 @@ void effect_destroy(effect *e) {
     mem_free(e->held);
     mem_free(e->meshes);
     mem_free(e->materials);
+    mem_free(e->nodes);
+    mem_free(e->shapes);
     mem_free(e->instances);
     mem_free(e->files);
     mem_free(e->places);
@@ -351,6 +353,11 @@ scene_instances *effect_add_instances(effect *e, const scene_instances_desc *des
 
 void effect_reset_instances(effect *e) {
     for (size_t i = 0; i < e->instances_count; i++) scene_instances_reset(e->instances[i]);
+}
+
+void effect_add_node(effect *e, scene_node *node) {
+    MEM_RESERVE(e->nodes, e->node_count + 1, e->node_capacity);
+    e->nodes[e->node_count++] = node;
 }
 
 void effect_add_material(effect *e, scene_material *material) {

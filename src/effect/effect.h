@@ -81,6 +81,8 @@ const mesh_texture *effect_add_texture(effect *e, const char *file); // PNG or J
 // Adds a material. If it has a name, its numbers become controls. It must live as long as the
 // effect.
 void effect_add_material(effect *e, scene_material *material);
+enum { EFFECT_MAX_PLACES = 64 };                   // nodes and meshes whose numbers are controls
+void effect_add_node(effect *e, scene_node *node); // must live as long as the effect
 // The effect owns the result. NULL with a message when it has too many instances.
 scene_instances *effect_add_instances(effect *e, const scene_instances_desc *desc);
 // Reads the panorama of the sky; an effect has one.
@@ -176,9 +178,15 @@ const char *effect_add_age_curve(effect *e, curve *c, palette *shown, const char
 enum { EFFECT_MAX_FIELDS = 256 }; // fields whose numbers are controls; those of later ones are not
 bool effect_has_room_for_field(const effect *e);
 // Makes controls of numbers that a field was given: "lumps.frequency". `values`: by argument of its
-// kind a constant of its own, whose value settings change, or NULL. `name` is made unique. False
-// with a message when a setting of such a name is wrong.
-bool effect_add_field(effect *e, const char *name, const field_kind *kind, field *const *values);
+// kind a constant of its own, whose value settings change, or NULL. `name` is made unique. A shape
+// is listed among those that stand in space (things.h). False with a message when a setting of such
+// a name is wrong.
+bool effect_add_field(effect *e, const char *name, const field *node, field *const *values);
+// Makes a control "GROUP.NAME" of numbers that are read while the effect loads, of which `value`
+// has as many as `desc` says: a setting replaces them. `made` is what effect_note_place was told;
+// both and `desc` must live as long as the effect. False with a message when a setting is wrong.
+bool effect_add_loaded(effect *e, const char *group, const value_desc *desc, const void *made,
+                       float *value);
 // Returns whether tiles were made, whose size and octaves follow from numbers of fields: another
 // number then needs another load.
 bool effect_has_tiles(const effect *e);
@@ -207,7 +215,9 @@ typedef enum effect_control_kind {
     EFFECT_CONTROL_SCENE,    // "camera.fov", "sun.azimuth", "sky.strength"
     EFFECT_CONTROL_LIGHT,    // "lamp.power"
     EFFECT_CONTROL_MATERIAL, // "rust.roughness"
+    EFFECT_CONTROL_PLACE,    // "rock.position", of a mesh or a node
     EFFECT_CONTROL_FIELD,    // "lumps.frequency"
+    EFFECT_CONTROL_LOADED,   // "air.position"
     EFFECT_CONTROL_EVENTS,   // "effect.events"
     EFFECT_CONTROL_UNIFORM,  // "march.steps"
     EFFECT_CONTROL_OPTION,   // "march.mode"

@@ -51,11 +51,12 @@ typedef struct control {
     char *text;          // of face.moved
     size_t text_capacity;
     // Of a uniform and a value of the scene: where its field is held, what the script gave (NULL:
-    // the default), and two constants that settings take in turn. Of a number of a field: the
-    // constant, whose value settings change, and a copy of it before any.
+    // the default), and two constants that settings take in turn. Of a number of a field and one
+    // that is read while it loads: a constant, whose value settings change, and a copy before any.
     const field **slot, *original;
     field *nodes[2];
     int turn;
+    const void *owner; // what has the value, where the script may leave all of its values open
     // Beside each, its state before any setting. A curve over age has both: fields read the
     // palette.
     palette *palette;
@@ -84,8 +85,9 @@ void field_control_print(const effect *e, const control *c, strbuf *out);
 void pass_control_add_all(effect *e, size_t pass);
 bool pass_control_set(effect *e, control *c, const char *text);
 void pass_control_print(const effect *e, const control *c, strbuf *out);
-bool scene_control_add_all(effect *e);                         // lights and materials too
+bool scene_control_add_all(effect *e); // also of lights, materials, meshes and nodes
 bool scene_control_unknown(const effect *e, const char *name); // true with a message of its own
+void effect_add_shape(effect *e, const char *name, const field *node); // where it is one; things.c
 bool ramp_set(effect *e, control *c, const char *text);
 void ramp_reset(effect *e, control *c);
 void ramp_print(const effect *e, const control *c, strbuf *out);
@@ -167,6 +169,11 @@ struct effect {
     const effect_setting *settings;
     bool *applied; // one per setting
     size_t setting_count;
+
+    struct effect_shape *shapes; // things.h
+    size_t shape_count, shape_capacity;
+    scene_node **nodes;
+    size_t node_count, node_capacity;
 
     struct noted_place *places; // place.c
     size_t place_count, place_capacity;

@@ -32,9 +32,12 @@ static const void *made_by_script(const effect *e, const control *c) {
     case EFFECT_CONTROL_SCENE:
     case EFFECT_CONTROL_LIGHT:
     case EFFECT_CONTROL_MATERIAL:
+    case EFFECT_CONTROL_PLACE:
         return c->face.moved ? c->original : *c->slot;
     case EFFECT_CONTROL_FIELD:
         return c->nodes[0];
+    case EFFECT_CONTROL_LOADED:
+        return c->owner;
     case EFFECT_CONTROL_UNIFORM:
     case EFFECT_CONTROL_OPTION:
     case EFFECT_CONTROL_SCALE:
@@ -53,5 +56,5 @@ const effect_place *effect_control_place(const effect *e, const effect_control *
         if (other->face.kind == c->kind && strcmp(other->face.group, c->group) == 0)
             own = find_place(e, made_by_script(e, other));
     }
-    return own;
+    return own ? own : find_place(e, ((const control *)c)->owner);
 }

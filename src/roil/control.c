@@ -95,6 +95,7 @@ void roil_get_control(roil_effect *e, size_t index, roil_control *out) {
     else if (desc->type != VALUE_OTHER)
         fill_field(e, c, out);
     if (out->field) out->structural = effect_has_tiles(e->effect);
+    if (c->kind == EFFECT_CONTROL_LOADED) out->structural = true;
 }
 
 size_t roil_control_count(const roil_effect *e) {

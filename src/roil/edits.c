@@ -404,9 +404,10 @@ roil_edits *roil_edits_create(roil_effect *e, const char *control) {
 
 roil_edits *roil_edits_create_parameter(roil_effect *e, const char *control) {
     const effect_control *c = effect_find_control(e->effect, control);
-    if (c && (is_param(c) || is_ramp(c) || c->kind == EFFECT_CONTROL_EVENTS)) {
+    if (c && (is_param(c) || is_ramp(c) || c->kind == EFFECT_CONTROL_EVENTS ||
+              c->kind == EFFECT_CONTROL_LOADED)) {
         err_set("'%s' cannot become a parameter; numbers and words of passes, fields, camera, sun, "
-                "sky, lights and materials can",
+                "sky, lights, materials, meshes and nodes can",
                 control);
         return NULL;
     }

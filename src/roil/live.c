@@ -66,9 +66,10 @@ static void drop_setting(roil_live *l, const char *name, const char *initial) {
     pthread_mutex_unlock(&l->lock);
 }
 
-// Returns whether only a load can set the control: an option or a resolution.
+// Returns whether only a load can set the control: an option, a resolution, a place of a grid.
 static bool is_fixed(const effect_control *c) {
-    return c->kind == EFFECT_CONTROL_OPTION || c->kind == EFFECT_CONTROL_SCALE;
+    return c->kind == EFFECT_CONTROL_OPTION || c->kind == EFFECT_CONTROL_SCALE ||
+           c->kind == EFFECT_CONTROL_LOADED;
 }
 
 static bool is_structural(const effect *e, const effect_control *c) {

@@ -103,15 +103,24 @@ static bool place_matrix(const field *const place[3], const field_context *conte
     return true;
 }
 
-bool scene_place_matrix(const field *position, const field *rotation, const field *scale,
-                        const scene_node *parent, const field_context *context, mat4 out) {
-    if (!place_matrix((const field *[]){position, rotation, scale}, context, out)) return false;
-    for (const scene_node *n = parent; n; n = n->parent) {
+bool scene_node_transform(const scene_node *node, const field_context *context, mat4 out) {
+    glm_mat4_identity(out);
+    for (const scene_node *n = node; n; n = n->parent) {
         mat4 outer;
         if (!place_matrix((const field *[]){n->position, n->rotation, n->scale}, context, outer))
             return err_prefix("%s: ", n->name);
         glm_mat4_mul(outer, out, out);
     }
+    return true;
+}
+
+bool scene_place_matrix(const field *position, const field *rotation, const field *scale,
+                        const scene_node *parent, const field_context *context, mat4 out) {
+    mat4 outer;
+    if (!place_matrix((const field *[]){position, rotation, scale}, context, out) ||
+        !scene_node_transform(parent, context, outer))
+        return false;
+    glm_mat4_mul(outer, out, out);
     return true;
 }
 

@@ -55,8 +55,8 @@ typedef struct scene_light {
     const field *softness; // 0..1: part of the cone over which it fades
 } scene_light;
 
-typedef struct scene_node { // a transform that meshes and instances can be placed in
-    const char *name;
+typedef struct scene_node {          // a transform that meshes and instances can be placed in
+    const char *name;                // in messages, and that its numbers are set by
     const field *position;           // vec3, metres
     const field *rotation;           // vec3, degrees about X, then Y, then Z
     const field *scale;              // factor
@@ -66,7 +66,9 @@ typedef struct scene_node { // a transform that meshes and instances can be plac
 typedef struct scene_material scene_material;
 
 typedef struct scene_mesh {
-    const char *name;
+    const char *name;   // its file
+    const char *called; // that its numbers are set by; NULL: they are not
+    bool repeated;      // stands where instances or particles are
     mesh_data data;
     const field *position;                   // vec3, metres
     const field *rotation;                   // vec3, degrees about X, then Y, then Z
@@ -123,6 +125,8 @@ bool scene_fill_frame(const scene *s, const field_context *context, float aspect
 // Evaluates sun and lights; the sun is the first, whatever its strength.
 bool scene_fill_lights(const scene *s, const field_context *context, struct light_block *out);
 
+// Returns the unit vector for angles in degrees: about +Z from +X, and above the horizon.
+void scene_direction(float azimuth, float elevation, vec3 out);
 // Returns the camera's position and target (m).
 bool scene_camera_eye(const scene_camera *c, const field_context *context, vec3 eye, vec3 target);
 
@@ -132,6 +136,8 @@ bool scene_mesh_upload(scene_mesh *mesh, gpu *g);
 bool scene_mesh_exchange(scene_mesh *mesh, scene_mesh *other);
 void scene_mesh_destroy(scene_mesh *mesh, gpu *g);
 bool scene_mesh_transform(const scene_mesh *mesh, const field_context *context, mat4 out);
+// Returns the transform of a node and of those that it is placed in; of NULL, none.
+bool scene_node_transform(const scene_node *node, const field_context *context, mat4 out);
 // Returns the transform and the colour. False with a message that names the mesh.
 bool scene_mesh_place(const scene_mesh *mesh, const field_context *context, mat4 transform,
                       float tint[4]);

@@ -8,8 +8,6 @@ bool scene_evaluate_scalar(const field *node, const field_context *context, floa
 // Clamps a number, which a product of parameters may have made invalid. NaN becomes `low`.
 float scene_limit(float value, float low, float high);
 float scene_limit_light(float value); // clamps a colour times a factor
-// Returns the unit vector for angles in degrees: about +Z from +X, and above the horizon.
-void scene_direction(float azimuth, float elevation, vec3 out);
 // Returns the transform to the world, through all parents.
 bool scene_place_matrix(const field *position, const field *rotation, const field *scale,
                         const scene_node *parent, const field_context *context, mat4 out);

@@ -156,7 +156,6 @@ static bool place_bodies(voxels *v, const field_context *context, double dt, boo
         voxels_placed *b = &v->bodies[i];
         mat4 now;
         b->moved = false;
-        if (b->placed && b->still) continue;
         if (!scene_mesh_transform(b->body.mesh, context, now))
             return err_prefix("%s: ", b->body.mesh->name);
         if (!is_finite(now)) glm_mat4_zero(now);

@@ -51,7 +51,7 @@ typedef struct voxels_placed { // a body
     voxels_body body;
     size_t surface; // of `surfaces`
     mat4 transform; // as last voxelised
-    bool still;     // nothing can move it
+    bool still;     // only a hand moves it
     bool placed, moved;
     voxels_motion motion;
 } voxels_placed;

@@ -136,6 +136,9 @@ const scene_node *value_get_node(lua_State *L, int table, const char *who, const
 scene_instances *value_instances(lua_State *L, int index);           // NULL: something else
 void instances_push(lua_State *L, const scene_instances *instances); // the object of the script
 bool value_get_vector(lua_State *L, int table, const char *who, const char *key, float out[3]);
+// The same of a place that is read while the file loads, by `call`, and can be set as "NAME.KEY".
+void value_get_place(lua_State *L, int table, const char *call, const char *key, const char *name,
+                     float3 *out);
 // Reads box = { min, max }; false when absent.
 bool value_get_box(lua_State *L, int table, const char *who, box3 *out);
 void value_push_box(lua_State *L, box3 box); // { min = {x, y, z}, max = {x, y, z} }

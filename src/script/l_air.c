@@ -53,15 +53,13 @@ static void read_size(lua_State *L, const air_type *type, pass_air_desc *desc) {
     }
 }
 
-static void read_desc(lua_State *L, const air_type *type, pass_air_desc *desc) {
+static void read_desc(lua_State *L, const air_type *type, const char *name, pass_air_desc *desc) {
     const char *who = type->name;
-    float position[3] = {0};
     read_size(L, type, desc);
     desc->voxel_size = value_get_number(L, 1, who, "voxel_size", (double)NAN);
     if (isnan(desc->voxel_size))
         vm_error(L, "%s: 'voxel_size' is missing: the edge of a cell in metres", who);
-    value_get_vector(L, 1, who, "position", position);
-    desc->position = (float3){position[0], position[1], position[2]};
+    value_get_place(L, 1, who, "position", name, &desc->position);
     desc->speed = value_get_number(L, 1, who, "speed", type->speed);
     desc->time_step = value_get_number(L, 1, who, "time_step", 0);
     desc->warm_up = value_get_number(L, 1, who, "warm_up", 0);
@@ -122,7 +120,8 @@ static int l_air(lua_State *L) {
     int result = lua_gettop(L);
     pass *p = pass_make(L, who, who, 1, script_object_find(who)->keys);
     pass_air_desc desc = {.voxel_size = 0};
-    read_desc(L, type, &desc); // after keys that are not known, which may be those that are missing
+    read_desc(L, type, variable,
+              &desc); // after keys that are not known, which may be those that are missing
     if (value_get(L, 1, "boundary") != LUA_TNIL) set_boundary(L, p);
     object->pass = p;
     object->grid = type->open(p, &desc);

@@ -138,8 +138,9 @@ static bool push_number(lua_State *L, const field_kind *kind, int count) {
     return true;
 }
 
-// Numbers that are written out in the call become controls, named after the variable.
-static void declare_numbers(lua_State *L, const kind_call *call) {
+// Numbers that are written out in the call become controls, named after the variable. A shape has a
+// name also where all of its numbers come from elsewhere.
+static void declare_numbers(lua_State *L, const kind_call *call, const field *node) {
     effect *e = script_of(L)->effect;
     field *values[FIELD_MAX_ARGS] = {0};
     size_t count = 0;
@@ -150,12 +151,12 @@ static void declare_numbers(lua_State *L, const kind_call *call) {
         script_note_place(L, values[i], call->kind->name);
         count++;
     }
-    if (count == 0) return;
+    if (count == 0 && strcmp(call->kind->group, "shape") != 0) return;
     char name[64];
     vm_charge_memory(L, count * EFFECT_CONTROL_COST);
     if (!value_variable(L, call->kind->name, name, sizeof name))
         str_copy(name, sizeof name, call->kind->name);
-    if (!effect_add_field(e, name, call->kind, values)) script_raise(L);
+    if (!effect_add_field(e, name, node, values)) script_raise(L);
 }
 
 // Upvalue: the kind. If the last argument is a table with names, it holds arguments and options.
@@ -175,8 +176,9 @@ static int l_kind(lua_State *L) {
     if (named) take_table(L, &call, n);
     imply_dimensions(&call);
     if (strcmp(kind->name, "advect") == 0) vm_charge_memory(L, FIELD_ADVECT_COST);
-    field_push(L, field_make(script_memory(L), kind->name, call.args, call.options));
-    declare_numbers(L, &call);
+    const field *node = field_make(script_memory(L), kind->name, call.args, call.options);
+    field_push(L, node);
+    declare_numbers(L, &call, node);
     return 1;
 }
 

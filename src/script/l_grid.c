@@ -49,22 +49,23 @@ static const field *read_moving(lua_State *L, const char *who, const char *key, 
     return made;
 }
 
-typedef struct moving {
+typedef struct played {
+    const char *name;           // of the sequence
     const field *speed, *start; // NULL: neither moves
-} moving;
+} played;
 
-static moving read_speed(lua_State *L, const char *who, sequence_desc *desc) {
+static void read_speed(lua_State *L, const char *who, sequence_desc *desc, played *out) {
     bool moves = false;
     vm_charge_memory(L, 2 * sizeof(field));
-    moving m = {.speed = read_moving(L, who, "speed", 1, &moves),
-                .start = read_moving(L, who, "start", 0, &moves)};
-    if (moves) return m;
+    out->speed = read_moving(L, who, "speed", 1, &moves);
+    out->start = read_moving(L, who, "start", 0, &moves);
+    if (moves) return;
     desc->start = value_get_number(L, 1, who, "start", 0);
     desc->speed = read_factor(L, who, "speed", 1);
-    return (moving){0};
+    out->speed = out->start = NULL;
 }
 
-static moving read_playback(lua_State *L, const script_object *row, sequence_desc *desc) {
+static played read_playback(lua_State *L, const script_object *row, sequence_desc *desc) {
     const char *who = row->name;
     desc->pattern = read_pattern(L, who);
     desc->root = effect_root(script_of(L)->effect);
@@ -76,24 +77,21 @@ static moving read_playback(lua_State *L, const script_object *row, sequence_des
     desc->up_by_creator = value_get(L, 1, "y_up") == LUA_TNIL;
     lua_pop(L, 1);
     desc->scale = (float)read_factor(L, who, "scale", 1);
-    float offset[3] = {0};
-    value_get_vector(L, 1, who, "offset", offset);
-    desc->offset = (float3){offset[0], offset[1], offset[2]};
-    return read_speed(L, who, desc);
+    played out = {.name = value_name_or_variable(L, 1, who)};
+    value_get_place(L, 1, who, "offset", out.name, &desc->offset);
+    read_speed(L, who, desc, &out);
+    return out;
 }
 
-static int push_sequence(lua_State *L, const char *who, const sequence_desc *desc,
-                         const moving *played) {
-    const char *name = value_name_or_variable(L, 1, who);
+static int push_sequence(lua_State *L, const sequence_desc *desc, const played *how) {
     sequence_object *object = object_new(L, "sequence", sizeof *object);
     effect *e = script_of(L)->effect;
     effect_add_file(e, desc->pattern); // new frames count as a change too
     object->sequence = sequence_create(script_memory(L), desc);
     if (!object->sequence) script_raise(L);
     effect_add_grid(e, sequence_grid(object->sequence));
-    effect_name_grid(e, sequence_grid(object->sequence), name);
-    if (played->speed)
-        effect_add_clock(e, sequence_grid(object->sequence), played->speed, played->start);
+    effect_name_grid(e, sequence_grid(object->sequence), how->name);
+    if (how->speed) effect_add_clock(e, sequence_grid(object->sequence), how->speed, how->start);
     const char *const *files;
     size_t count = sequence_files(object->sequence, &files);
     for (size_t i = 0; i < count; i++) effect_add_file(e, files[i]);
@@ -104,11 +102,11 @@ static int l_vdb(lua_State *L) {
     script_require_loading(L, "vdb");
     sequence_desc desc = {0};
     const script_object *row = value_check_object(L, 1, "vdb");
-    const moving played = read_playback(L, row, &desc);
+    const played how = read_playback(L, row, &desc);
     desc.storage = (sequence_storage)value_get_choice(L, 1, row, "storage");
     desc.level_set = (vdb_set)value_get_choice(L, 1, row, "level_set");
     if (effect_draws(script_of(L)->effect)) vdb_warm_up();
-    return push_sequence(L, "vdb", &desc, &played);
+    return push_sequence(L, &desc, &how);
 }
 
 static uint64_t bytes_of(lua_State *L, const char *key) {
@@ -122,7 +120,7 @@ static int l_raw(lua_State *L) {
     script_require_loading(L, "raw");
     const script_object *row = value_check_object(L, 1, "raw");
     sequence_desc desc = {0};
-    const moving played = read_playback(L, row, &desc);
+    const played how = read_playback(L, row, &desc);
     float size[3] = {0};
     if (!value_get_vector(L, 1, "raw", "size", size))
         vm_error(L, "raw: 'size' is missing: the voxels of a frame, as in {32, 32, 32}");
@@ -143,7 +141,7 @@ static int l_raw(lua_State *L) {
     desc.raw.padding = value_get_count(L, 1, "raw", "padding", 0);
     desc.raw.value_scale = (float)read_factor(L, "raw", "value_scale", 1);
     desc.raw.channel = value_get_string(L, 1, "raw", "channel");
-    return push_sequence(L, "raw", &desc, &played);
+    return push_sequence(L, &desc, &how);
 }
 
 // ---- what a sequence has ----------------------------------------------------------------------

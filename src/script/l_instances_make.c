@@ -196,6 +196,7 @@ static size_t read_kinds(lua_State *L, scene_mesh *kinds[SCENE_INSTANCES_MAX_KIN
                      "instances",
                      object->mesh->name);
         kinds[i] = object->mesh;
+        kinds[i]->repeated = true;
         lua_pop(L, 1);
     }
     return count;

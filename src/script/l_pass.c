@@ -137,6 +137,7 @@ static void add_positional(lua_State *L, pass_call *call, int value) {
     if (mesh) {
         vm_charge_memory(L, sizeof mesh);
         if (!pass_add_mesh(call->pass, mesh->mesh)) script_raise(L);
+        if (strcmp(call->who, "pieces") == 0) mesh->mesh->repeated = true;
     } else if (instances) {
         if (!pass_draws_meshes(call->pass))
             vm_charge_memory(L, scene_instances_count(instances) * SHAPE_COST);

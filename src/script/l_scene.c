@@ -1,8 +1,11 @@
 // The scene around the volume: mesh { "file" }, orbit { } and camera { }, sun { }, sky { }. Every
 // number may change over time. Keys that are not given keep the scene's default.
+#include "base/file.h"
 #include "base/memory.h"
 #include "scene/material.h"
 #include "script/binding.h"
+#include <ctype.h>
+#include <stdio.h>
 #include <string.h>
 
 void value_read_slots(lua_State *L, const char *who, void *out) {
@@ -73,7 +76,8 @@ static int l_sky(lua_State *L) {
     return 1;
 }
 
-enum { MOST_NODES = 64 }; // one in the other
+enum { MOST_NODES = 64 };    // one in the other
+enum { PLACE_CONTROLS = 4 }; // of a mesh or a node
 
 typedef struct node_object {
     const scene_node *node;
@@ -94,7 +98,8 @@ const scene_node *value_get_node(lua_State *L, int table, const char *who, const
 static int l_node(lua_State *L) {
     value_refuse_array(L, "node");
     node_object *object = object_new(L, "node", sizeof *object);
-    vm_charge_memory(L, sizeof(scene_node) + 3 * sizeof(field));
+    vm_charge_memory(L,
+                     sizeof(scene_node) + 3 * sizeof(field) + PLACE_CONTROLS * EFFECT_CONTROL_COST);
     arena *memory = script_memory(L);
     scene_node *node = arena_alloc(memory, sizeof *node);
     *node = (scene_node){.name = value_name_or_variable(L, 1, "node"),
@@ -105,14 +110,30 @@ static int l_node(lua_State *L) {
         vm_error(L, "node: %d stand in each other; at most %d are possible", depth, MOST_NODES);
     value_read_slots(L, "node", node);
     scene_set_defaults(scene_node_values, SCENE_ALL, node, memory);
+    script_note_place(L, node, "node");
+    effect_add_node(script_of(L)->effect, node);
     object->node = node;
     return 1;
+}
+
+// What a mesh's numbers are set by: its variable, else its file: "data/pine-2.obj" is "pine_2".
+static const char *name_mesh(lua_State *L, const char *file, bool table) {
+    char name[64];
+    if (table && value_variable(L, "mesh", name, sizeof name))
+        return arena_string(script_memory(L), name);
+    const char *stem = path_name(file);
+    snprintf(name, sizeof name, "%s%.*s", isdigit((unsigned char)stem[0]) ? "mesh_" : "",
+             (int)strcspn(stem, "."), stem);
+    for (char *at = name; *at; at++)
+        if (!isalnum((unsigned char)*at)) *at = '_';
+    return name[0] ? arena_string(script_memory(L), name) : "mesh";
 }
 
 // mesh { "data/ground.obj", ... }, or mesh "data/ground.obj".
 static int l_mesh(lua_State *L) {
     scene_mesh values = {0};
-    if (lua_type(L, 1) == LUA_TSTRING) {
+    bool table = lua_type(L, 1) != LUA_TSTRING;
+    if (!table) {
         lua_createtable(L, 1, 0);
         lua_insert(L, 1);
         lua_rawseti(L, 1, 1);
@@ -127,7 +148,8 @@ static int l_mesh(lua_State *L) {
     scene_mesh *mesh = effect_add_mesh(script_of(L)->effect, file);
     if (!mesh) script_raise(L);
     vm_charge_memory(L, (size_t)mesh->data.vertex_count * sizeof(mesh_vertex) +
-                            (size_t)mesh->data.index_count * sizeof(uint32_t));
+                            (size_t)mesh->data.index_count * sizeof(uint32_t) +
+                            PLACE_CONTROLS * EFFECT_CONTROL_COST);
     if (values.position) mesh->position = values.position;
     if (values.rotation) mesh->rotation = values.rotation;
     if (values.scale) mesh->scale = values.scale;
@@ -138,6 +160,8 @@ static int l_mesh(lua_State *L) {
         values.position || values.rotation || values.scale || values.color || mesh->parent;
     object->at = values.position;
     object->mesh = mesh;
+    mesh->called = name_mesh(L, file, table);
+    script_note_place(L, mesh, "mesh");
     return 1;
 }
 

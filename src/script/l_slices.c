@@ -35,17 +35,16 @@ static void read_size(lua_State *L, pass_slices_desc *desc) {
     }
 }
 
-static void read_desc(lua_State *L, pass_slices_desc *desc) {
-    float position[3] = {0}, axis[3] = {0, 0, 1};
+static void read_desc(lua_State *L, const char *name, pass_slices_desc *desc) {
+    float axis[3] = {0, 0, 1};
     read_size(L, desc);
     desc->count = value_get_count(L, 1, "slices", "count", 2);
     if (desc->count < 1 || desc->count > PASS_SLICES_MOST)
         vm_error(L, "slices: 'count' is %d; 1 to %d are accepted", (int)desc->count,
                  (int)PASS_SLICES_MOST);
     desc->height = value_get_number(L, 1, "slices", "height", 1);
-    value_get_vector(L, 1, "slices", "position", position);
+    value_get_place(L, 1, "slices", "position", name, &desc->position);
     value_get_vector(L, 1, "slices", "axis", axis);
-    desc->position = (float3){position[0], position[1], position[2]};
     desc->axis = (float3){axis[0], axis[1], axis[2]};
     desc->time_step = value_get_number(L, 1, "slices", "time_step", 1.0 / 60);
     desc->warm_up = value_get_number(L, 1, "slices", "warm_up", 0);
@@ -69,7 +68,7 @@ static int l_slices(lua_State *L) {
     int result = lua_gettop(L);
     pass *p = pass_make(L, "slices", "slices", 1, script_object_find("slices")->keys);
     pass_slices_desc desc = {0};
-    read_desc(L, &desc); // after keys that are not known, which may be those that are missing
+    read_desc(L, variable, &desc); // after keys that are not known, which may be those that are missing
     object->pass = p;
     object->offset = read_offset(L);
     object->count = desc.count;

@@ -245,6 +245,21 @@ bool value_get_vector(lua_State *L, int table, const char *who, const char *key,
     return true;
 }
 
+void value_get_place(lua_State *L, int table, const char *call, const char *key, const char *name,
+                     float3 *out) {
+    float at[3] = {0};
+    value_get_vector(L, table, call, key, at);
+    vm_charge_memory(L, EFFECT_CONTROL_COST);
+    const value_desc place = {.name = key,
+                              .components = 3,
+                              .unit = "m",
+                              .help = "where it is; taken when the effect loads"};
+    const value_desc *desc = arena_copy(script_memory(L), &place, sizeof place);
+    script_note_place(L, desc, call);
+    if (!effect_add_loaded(script_of(L)->effect, name, desc, desc, at)) script_raise(L);
+    *out = (float3){at[0], at[1], at[2]};
+}
+
 int value_word(lua_State *L, int index, const char *who, const char *key, const char *const *words,
                size_t count) {
     if (lua_type(L, index) != LUA_TSTRING) wrong(L, index, who, key, "a word in quotes");
