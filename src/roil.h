@@ -314,6 +314,7 @@ typedef struct roil_control { // strings live as long as the effect
     const char *group; // of a parameter: as declared, "" for none; else the part before the dot
     bool parameter;    // declared by the script, for its users
     bool field;        // a number that a field was given, such as "lumps.frequency"
+    bool object;       // of a light, a material, a node, a mesh, a volume: "lamp.power"
     roil_type type;
     int components;
     float value[4];   // now: of bool 0 or 1, of enum its index; of palette and curve nothing

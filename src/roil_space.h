@@ -25,9 +25,11 @@ extern const char *const roil_things[ROIL_THINGS]; // names: "camera"
 
 typedef struct roil_handle { // a point of a thing; strings live as long as the effect
     roil_thing thing;
-    const char *name;      // of the thing: "lamp"
-    const char *part;      // what of it the point is: "position", "target", "radius", "size", "key"
-    float at[3];           // of the sun the direction towards it, of length 1
+    const char *name; // of the thing: "lamp"
+    const char *part; // what of it the point is: "position", "target", "radius", "size", "key"
+    // Of the sun the direction towards it, of length 1; of a mesh that a control moves the middle
+    // of its box.
+    float at[3];
     const char *control;   // that moves the point; NULL: only the script does
     const char *second;    // the other one of two: "sun.elevation" beside "sun.azimuth"; NULL: none
     size_t key;            // of the curve that the control is, from 0

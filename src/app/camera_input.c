@@ -6,7 +6,8 @@
 
 static const float TURN = 0.3f;   // degrees a unit
 static const float ABOVE = 0.01f; // of the ground, by the distance of what is looked at
-enum { RAISES = 4 };              // at most: ground that slopes is another where the eye then is
+static const float LONG_LENS = 1, STEEP = 89, HALF = 0.00872665f; // degrees, and to half in radians
+enum { RAISES = 4 }; // at most: ground that slopes is another where the eye then is
 
 // Starts from the camera that the user moved last; after a reload or a reset, from the one that the
 // effect was drawn with.
@@ -79,9 +80,64 @@ void camera_frame(live *l) {
     put_down(l);
 }
 
+static void reset_lens(live *l) {
+    live_reset(l, "camera.fov");
+    live_reset(l, "camera.near");
+    live_reset(l, "camera.far");
+}
+
 void camera_reset(live *l) {
     if (!l->effect) return;
     live_reset(l, "camera.eye");
     live_reset(l, "camera.target");
+    reset_lens(l);
     l->camera_moved = false;
+}
+
+// ---- without perspective ------------------------------------------------------------------------
+
+static void set_number(live *l, const char *name, float value) {
+    char text[32];
+    snprintf(text, sizeof text, "%.6g", (double)value);
+    live_set(l, name, text);
+}
+
+// Changes the lens and the distance together: what is looked at keeps its size.
+static void change_lens(live *l, float fov) {
+    l->camera.distance *= tanf(l->camera.fov * HALF) / tanf(fov * HALF);
+    l->camera.fov = fov;
+}
+
+// A long lens far away: lines along the view meet a hundredth as much as others.
+static void look_along(live *l, float yaw, float pitch) {
+    if (!take_up(l)) return;
+    change_lens(l, LONG_LENS);
+    l->camera.yaw = yaw;
+    l->camera.pitch = pitch;
+    set_number(l, "camera.fov", LONG_LENS);
+    set_number(l, "camera.near", l->camera.distance * 0.1f);
+    set_number(l, "camera.far", l->camera.distance * 10);
+    put_down(l);
+}
+
+void camera_front(live *l) {
+    look_along(l, 0, 0);
+}
+
+void camera_side(live *l) {
+    look_along(l, 90, 0);
+}
+
+void camera_top(live *l) {
+    look_along(l, 0, 90);
+}
+
+void camera_perspective(live *l) {
+    roil_camera camera;
+    if (!take_up(l)) return;
+    reset_lens(l);
+    if (!roil_get_camera(l->effect, &camera)) return;
+    change_lens(l, camera.fov);
+    l->camera.pitch = fminf(l->camera.pitch, STEEP);
+    put_down(l);
 }

@@ -120,6 +120,7 @@ static int run_window(live *l, window *w, const job *j) {
     l->inspector = inspector_create();
     l->flow_tools = flow_tools_create();
     l->panel = panel_create();
+    l->handles = handles_create();
     take_session(l, j);
     bool done = live_loop(l, w);
     restart_disarm();
@@ -134,6 +135,7 @@ static int run_window(live *l, window *w, const job *j) {
     write_back_close(l);
     undo_free(&l->undo);
     panel_destroy(l->panel);
+    handles_destroy(l->handles);
     flow_tools_destroy(l->flow_tools, l->r);
     inspector_destroy(l->inspector, l->r);
     performance_destroy(l->performance);

@@ -19,6 +19,7 @@ static const entry mouse[] = {
     {"Shift drag", "move the camera"},
     {"Wheel", "nearer, farther"},
     {"Double click", "frame the volume"},
+    {"Drag a handle (H)", "move it; Shift: level, Ctrl: in steps"},
     {"Drag in the timeline", "choose the frame"},
     {"Shift drag there", "choose the range to loop"},
     {"Double click a number", "type it"},

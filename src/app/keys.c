@@ -71,6 +71,14 @@ static void slices(live *l) {
     l->session.slices = !l->session.slices;
 }
 
+static void key_handles(live *l) {
+    l->session.handles = !l->session.handles;
+}
+
+static void key_ground(live *l) {
+    l->session.ground = !l->session.ground;
+}
+
 static void performance_key(live *l) {
     l->session.performance = !l->session.performance;
 }
@@ -154,6 +162,12 @@ static const live_key keys[] = {
     {GLFW_KEY_BACKSPACE, 0, "Backspace", "restart without clicks and keys", key_restart},
     {GLFW_KEY_F, 0, "F", "frame the volume", camera_frame},
     {GLFW_KEY_R, 0, "R", "camera of the effect file", camera_reset},
+    {GLFW_KEY_H, 0, "H", "handles in the picture, to be dragged", key_handles},
+    {GLFW_KEY_G, 0, "G", "a grid on the ground", key_ground},
+    {GLFW_KEY_1, 0, "1", "look from the front, without perspective", camera_front},
+    {GLFW_KEY_2, 0, "2", "look from the right", camera_side},
+    {GLFW_KEY_3, 0, "3", "look from above", camera_top},
+    {GLFW_KEY_0, 0, "0", "look with perspective again", camera_perspective},
     {GLFW_KEY_V, 0, "V", "picture at full, half, quarter size", key_preview},
     {GLFW_KEY_TAB, 0, "Tab", "show the picture alone", panels},
     {GLFW_KEY_I, 0, "I", "inspect the images of passes", key_inspect},

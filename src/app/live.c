@@ -233,11 +233,14 @@ static layout lay_out(live *l, uint32_t width, uint32_t height) {
     return out;
 }
 
-static void draw_interface(live *l, const layout *at, uint32_t width) {
+static void draw_interface(live *l, const loop *p, const layout *at, uint32_t width) {
     ui_canvas view = ui_bare(l->view);
     ui_mark("view", l->view);
-    camera_input(l, &view);
-    event_input(l, &view);
+    if (!handles_input(l, &view)) {
+        camera_input(l, &view);
+        event_input(l, &view);
+    }
+    if (p->drawn) handles_draw(l);
     status_draw(l, l->view);
     if (!l->session.panel_hidden) {
         timeline_draw(l, at->bar);
@@ -343,7 +346,7 @@ bool live_loop(live *l, window *w) {
         if (l->shot) take_shot(l, &p);
         ui_begin();
         undo_frame(&l->undo, ui_held());
-        draw_interface(l, &at, width);
+        draw_interface(l, &p, &at, width);
         ui_end(&p.picture);
         if (roil_is_lost(l->r) || !loop_show(l, &p, width, height)) {
             if (!l->broken) live_break(l, roil_error());

@@ -20,14 +20,16 @@ typedef struct live_session { // what is restored at the next start; session.c
     bool maximized;
     float panel; // width of the panel, units
     bool panel_hidden, performance, inspector, slices;
-    char image[96]; // shown by the inspector
-    int preview;    // index in live_previews; -1: never chosen
+    bool handles, ground; // are shown over the picture
+    char image[96];       // shown by the inspector
+    int preview;          // index in live_previews; -1: never chosen
 } live_session;
 
 typedef struct performance performance; // performance.c
 typedef struct inspector inspector;     // inspector.c
 typedef struct flow_tools flow_tools;   // flow_tools.c
 typedef struct panel panel;             // panel.c
+typedef struct handles handles;         // handles.c
 typedef struct write_back write_back;   // write_back.c
 
 typedef struct live {
@@ -53,6 +55,7 @@ typedef struct live {
     inspector *inspector;
     flow_tools *flow_tools;
     panel *panel;
+    handles *handles;
     undo undo;
     bool undo_list;         // is shown
     bool awaits_file;       // a step wrote files, which are not loaded yet; then on to `goal`
@@ -100,6 +103,18 @@ void write_back_close(live *l);
 void camera_input(live *l, const ui_canvas *view); // handles the pointer over the picture
 void camera_frame(live *l);                        // makes the volume fill the picture
 void camera_reset(live *l);                        // returns to the script's camera
+// Look along an axis with a long lens, which has next to no perspective; and with the script's.
+void camera_front(live *l);
+void camera_side(live *l);
+void camera_top(live *l);
+void camera_perspective(live *l);
+
+// ---- handles.c: what stands in space is seen and dragged in the picture -------------------------
+
+handles *handles_create(void);
+void handles_destroy(handles *h);
+bool handles_input(live *l, const ui_canvas *view); // true: they have the pointer
+void handles_draw(const live *l);                   // the grid on the ground too
 
 // ---- event_input.c: keys and clicks that the effect's script handles ----------------------------
 

@@ -81,6 +81,7 @@ static const char *chapter(panel_part part) {
     case PANEL_CAMERA:
     case PANEL_SUN:
     case PANEL_SKY:
+    case PANEL_OBJECT:
         return "Scene";
     case PANEL_PASS:
         return "Passes";

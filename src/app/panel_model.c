@@ -36,7 +36,7 @@ static panel_part part_of(const roil_control *c) {
     if (strcmp(c->group, "camera") == 0) return PANEL_CAMERA;
     if (strcmp(c->group, "sun") == 0) return PANEL_SUN;
     if (strcmp(c->group, "sky") == 0) return PANEL_SKY;
-    return PANEL_PASS;
+    return c->object ? PANEL_OBJECT : PANEL_PASS;
 }
 
 static const char *title_of(const roil_control *c) {

@@ -12,7 +12,8 @@ typedef enum panel_part {
     PANEL_CAMERA,
     PANEL_SUN,
     PANEL_SKY,
-    PANEL_PASS, // one pass: options, then uniforms
+    PANEL_OBJECT, // one light, material, node, mesh or volume
+    PANEL_PASS,   // one pass: options, then uniforms
     PANEL_PART_COUNT
 } panel_part;
 

@@ -48,14 +48,16 @@ static undo_value *find(undo_step *s, const char *name) {
     return NULL;
 }
 
+// Several values of one thing are that thing: "camera", "sun".
 static void name_step(undo_step *s) {
-    bool views = true;
-    for (size_t i = 0; i < s->count; i++)
-        views = views && strncmp(s->values[i].name, camera, sizeof camera - 1) == 0;
+    size_t thing = strcspn(s->values[0].name, ".") + 1;
+    bool same = true;
+    for (size_t i = 1; i < s->count; i++)
+        same = same && strncmp(s->values[i].name, s->values[0].name, thing) == 0;
     if (s->count == 1)
         str_copy(s->label, sizeof s->label, s->values[0].name);
-    else if (views)
-        str_copy(s->label, sizeof s->label, "camera");
+    else if (same)
+        snprintf(s->label, sizeof s->label, "%.*s", (int)thing - 1, s->values[0].name);
     else
         snprintf(s->label, sizeof s->label, "%zu values", s->count);
 }

@@ -75,19 +75,22 @@ void roil_get_control(roil_effect *e, size_t index, roil_control *out) {
     const value_desc *desc = c->desc;
     const char *dot = strrchr(c->name, '.');
     bool limited = desc->min != 0 || desc->max != 0 || desc->type == VALUE_WORD;
-    *out = (roil_control){.name = c->name,
-                          .label = dot ? dot + 1 : c->name,
-                          .group = c->group,
-                          .type = type_of(c),
-                          .components = desc->components,
-                          .min = limited ? desc->min : -INFINITY,
-                          .max = limited ? desc->max : INFINITY,
-                          .unit = desc->unit,
-                          .help = desc->help,
-                          .words = desc->words,
-                          .word_count = desc->word_count,
-                          .field = c->kind == EFFECT_CONTROL_FIELD,
-                          .moved = c->moved != NULL};
+    *out = (roil_control){
+        .name = c->name,
+        .label = dot ? dot + 1 : c->name,
+        .group = c->group,
+        .type = type_of(c),
+        .components = desc->components,
+        .min = limited ? desc->min : -INFINITY,
+        .max = limited ? desc->max : INFINITY,
+        .unit = desc->unit,
+        .help = desc->help,
+        .words = desc->words,
+        .word_count = desc->word_count,
+        .field = c->kind == EFFECT_CONTROL_FIELD,
+        .object = c->kind == EFFECT_CONTROL_LIGHT || c->kind == EFFECT_CONTROL_MATERIAL ||
+                  c->kind == EFFECT_CONTROL_PLACE || c->kind == EFFECT_CONTROL_LOADED,
+        .moved = c->moved != NULL};
     if (c->kind == EFFECT_CONTROL_PARAM)
         fill_param(effect_get_param(e->effect, c->index), out);
     else if (c->kind == EFFECT_CONTROL_OPTION || c->kind == EFFECT_CONTROL_SCALE)

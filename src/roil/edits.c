@@ -78,12 +78,18 @@ static bool is_param(const effect_control *c) {
     return c->kind == EFFECT_CONTROL_PARAM;
 }
 
+static bool is_loaded(const effect_control *c) { // beside those of a pass that the call makes too
+    return c->kind == EFFECT_CONTROL_LOADED;
+}
+
 // Returns whether the same call makes another object too, as in a loop or a function.
 static bool is_shared(const effect *e, const effect_control *c, const effect_place *place) {
     for (size_t i = 0; i < effect_control_count(e); i++) {
         const effect_control *other = effect_get_control(e, i);
         bool alone = is_param(c) || is_ramp(c); // each is an object of its own
-        if (other == c || is_param(other) != is_param(c) || is_ramp(other) != is_ramp(c)) continue;
+        if (other == c || is_param(other) != is_param(c) || is_ramp(other) != is_ramp(c) ||
+            is_loaded(other) != is_loaded(c))
+            continue;
         if (!alone && strcmp(other->group, c->group) == 0) continue;
         if (is_same_place(effect_control_place(e, other), place)) return true;
     }

@@ -265,7 +265,9 @@ static void add_mesh(points *all, const scene_mesh *mesh) {
         return;
     p.parent = mesh->parent;
     turn_box(mesh->data.box, transform, p.face.low, p.face.high);
-    add_place(all, &p);
+    if (!add_place(all, &p) || !p.face.control) return;
+    for (int i = 0; i < 3; i++) // several often share an origin
+        all->list[all->count - 1].face.at[i] = (p.face.low[i] + p.face.high[i]) / 2;
 }
 
 static void add_node(points *all, const scene_node *node) {

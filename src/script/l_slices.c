@@ -68,7 +68,8 @@ static int l_slices(lua_State *L) {
     int result = lua_gettop(L);
     pass *p = pass_make(L, "slices", "slices", 1, script_object_find("slices")->keys);
     pass_slices_desc desc = {0};
-    read_desc(L, variable, &desc); // after keys that are not known, which may be those that are missing
+    read_desc(L, variable,
+              &desc); // after keys that are not known, which may be those that are missing
     object->pass = p;
     object->offset = read_offset(L);
     object->count = desc.count;

@@ -83,7 +83,7 @@ static void things_are_listed_with_what_moves_them(void **state) {
     find(e, "stand", "position", &h);
     is_moved_by(&h, "stand.position");
     find(e, "rock", "position", &h); // turned and scaled by its node
-    is_at(&h, 0, 2, 1);
+    is_at(&h, -1, 3, 1);             // the middle of its box
     is_moved_by(&h, "rock.position");
     assert_float_equal(h.high[1], 4, 1e-5f);
     find(e, "air", "position", &h);
@@ -113,7 +113,7 @@ static void points_go_where_they_are_moved(void **state) {
     assert_true(h.high[1] == 2 && h.low[2] == -3);
     char *text = roil_control_text(e, "rock.position"); // in its node, which has moved since
     need(text);
-    assert_string_equal(text, "3,-2.5,3");
+    assert_string_equal(text, "2.5,-3,3");
     roil_free(text);
     size_t index = find(e, "given", "position", &h);
     text = roil_handle_text(e, index, false, (const float[]){9, 2, 1});
