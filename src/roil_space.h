@@ -52,6 +52,26 @@ char *roil_handle_text(roil_effect *e, size_t handle, bool second, const float a
 bool roil_handle_path(roil_effect *e, size_t handle, const double *times, float (*out)[3],
                       size_t count);
 
+// ---- what fills space ---------------------------------------------------------------------------
+
+enum { ROIL_PROBE_VALUES = 8 };
+typedef struct roil_probed {
+    bool found;    // false: nothing is seen there
+    float at[3];   // the point that half of what one sees lies before (m)
+    float density; // of all media together (1/m)
+    struct {
+        const char
+            *name; // what the script reads of a grid: "air.temperature"; as long as the effect
+        int components;
+        float value[4];
+    } values[ROIL_PROBE_VALUES];
+    size_t count; // of them
+} roil_probed;
+// Finds what one sees of the effect's media along the camera's ray through x, y (0 to 1 from the
+// top left), in the last frame. Waits for the device; the first call of an effect compiles a
+// shader. False with a message: the effect has no medium, or one that fills all of space.
+bool roil_probe(roil_effect *e, float x, float y, roil_probed *out);
+
 #ifdef __cplusplus
 }
 #endif

@@ -75,6 +75,10 @@ static void key_handles(live *l) {
     l->session.handles = !l->session.handles;
 }
 
+static void key_probe(live *l) {
+    l->session.probe = !l->session.probe;
+}
+
 static void key_ground(live *l) {
     l->session.ground = !l->session.ground;
 }
@@ -164,6 +168,7 @@ static const live_key keys[] = {
     {GLFW_KEY_R, 0, "R", "camera of the effect file", camera_reset},
     {GLFW_KEY_H, 0, "H", "handles in the picture, to be dragged", key_handles},
     {GLFW_KEY_G, 0, "G", "a grid on the ground", key_ground},
+    {GLFW_KEY_D, 0, "D", "what is under the pointer: density and what grids hold", key_probe},
     {GLFW_KEY_1, 0, "1", "look from the front, without perspective", camera_front},
     {GLFW_KEY_2, 0, "2", "look from the right", camera_side},
     {GLFW_KEY_3, 0, "3", "look from above", camera_top},

@@ -157,6 +157,7 @@ static void draw_effect(live *l, loop *p) {
     log_write(LOG_DEBUG, "live: drew frame %g", frame);
     l->dirty = gathers(l) || waits(l);
     p->drawn = true;
+    l->pictures++;
     p->frame = frame;
     performance_add(l->performance, l->effect, end - start, start - p->drawn_at);
     p->drawn_at = start;
@@ -241,6 +242,7 @@ static void draw_interface(live *l, const loop *p, const layout *at, uint32_t wi
         event_input(l, &view);
     }
     if (p->drawn) handles_draw(l);
+    if (p->drawn) probe_draw(l, &view);
     status_draw(l, l->view);
     if (!l->session.panel_hidden) {
         timeline_draw(l, at->bar);

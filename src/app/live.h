@@ -20,9 +20,9 @@ typedef struct live_session { // what is restored at the next start; session.c
     bool maximized;
     float panel; // width of the panel, units
     bool panel_hidden, performance, inspector, slices;
-    bool handles, ground; // are shown over the picture
-    char image[96];       // shown by the inspector
-    int preview;          // index in live_previews; -1: never chosen
+    bool handles, ground, probe; // are shown over the picture
+    char image[96];              // shown by the inspector
+    int preview;                 // index in live_previews; -1: never chosen
 } live_session;
 
 typedef struct performance performance; // performance.c
@@ -31,6 +31,14 @@ typedef struct flow_tools flow_tools;   // flow_tools.c
 typedef struct panel panel;             // panel.c
 typedef struct handles handles;         // handles.c
 typedef struct write_back write_back;   // write_back.c
+
+typedef struct live_probe { // what was found under the pointer last; probe.c
+    roil_probed found;
+    float x, y;            // where in the picture
+    const roil_effect *of; // NULL: nothing was
+    uint64_t picture;      // live.pictures then
+    char why[256];         // it could not be found out
+} live_probe;
 
 typedef struct live {
     roil *r;
@@ -57,10 +65,12 @@ typedef struct live {
     panel *panel;
     handles *handles;
     undo undo;
-    bool undo_list;         // is shown
-    bool awaits_file;       // a step wrote files, which are not loaded yet; then on to `goal`
-    size_t goal;            // steps that shall hold
-    size_t restored;        // step, from 1, whose values are set once its file is loaded; 0: none
+    bool undo_list;   // is shown
+    bool awaits_file; // a step wrote files, which are not loaded yet; then on to `goal`
+    size_t goal;      // steps that shall hold
+    size_t restored;  // step, from 1, whose values are set once its file is loaded; 0: none
+    live_probe probe;
+    uint64_t pictures;      // that were drawn
     write_back *writing;    // what the user is asked to write; NULL: nothing
     uint32_t width, height; // of the effect's picture, pixels
     ui_rect view;           // where the picture is shown
@@ -115,6 +125,10 @@ handles *handles_create(void);
 void handles_destroy(handles *h);
 bool handles_input(live *l, const ui_canvas *view); // true: they have the pointer
 void handles_draw(const live *l);                   // the grid on the ground too
+
+// ---- probe.c: what fills space under the pointer ------------------------------------------------
+
+void probe_draw(live *l, const ui_canvas *view);
 
 // ---- event_input.c: keys and clicks that the effect's script handles ----------------------------
 

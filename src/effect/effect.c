@@ -83,6 +83,7 @@ void effect_destroy(effect *e) {
     effect_forget_snapshots(e);
     mem_free(e->snapshots);
     mem_free(e->ahead_times);
+    if (e->probe) pass_destroy(e->probe);
     for (size_t i = 0; i < e->pass_count; i++) pass_destroy(e->passes[i]);
     for (size_t i = 0; i < e->grid_count; i++)
         if (e->grids[i]->destroy) e->grids[i]->destroy(e->grids[i], e->device);

@@ -172,6 +172,12 @@ struct effect {
 
     struct effect_shape *shapes; // things.h
     size_t shape_count, shape_capacity;
+    struct effect_reading *readings;
+    size_t reading_count;
+    pass *probe;                            // probe.c; NULL: not made yet
+    const char *no_probe;                   // why it cannot be; NULL: it can
+    const struct effect_reading *probed[8]; // what it is asked for
+    size_t probed_count;
     scene_node **nodes;
     size_t node_count, node_capacity;
 

@@ -407,3 +407,20 @@ bool roil_handle_path(roil_effect *e, size_t handle, const double *times, float 
     }
     return true;
 }
+
+// ---- what fills space ---------------------------------------------------------------------------
+
+bool roil_probe(roil_effect *e, float x, float y, roil_probed *out) {
+    effect_probed found;
+    time_limit time = roil_time_limit(e->owner), *before = time_limit_enter(&time);
+    bool done = effect_probe(e->effect, x, y, &found);
+    time_limit_leave(before);
+    *out = (roil_probed){.found = found.found, .density = found.density, .count = found.count};
+    memcpy(out->at, found.at, sizeof out->at);
+    for (size_t i = 0; i < found.count; i++) {
+        out->values[i].name = found.values[i].name;
+        out->values[i].components = found.values[i].components;
+        memcpy(out->values[i].value, found.values[i].value, sizeof out->values[i].value);
+    }
+    return done;
+}

@@ -3,6 +3,7 @@
 #pragma once
 #include "base/time_limit.h"
 #include "effect/effect.h"
+#include "effect/things.h"
 #include "script/reference.h"
 #include "script/script.h"
 #include "script/vm.h"

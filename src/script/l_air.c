@@ -324,7 +324,9 @@ static int l_index(lua_State *L) {
         script_require_loading(L, "a field of simulated air");
         int components, channel = pass_air_use(air->pass, name, &components);
         if (channel < 0) refuse_name(L, air->pass, name);
-        field_push(L, field_grid_channel(script_memory(L), air->grid, channel, components));
+        const field *node = field_grid_channel(script_memory(L), air->grid, channel, components);
+        effect_note_reading(script_of(L)->effect, air->grid, name, node);
+        field_push(L, node);
     }
     return 1;
 }

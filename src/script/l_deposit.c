@@ -45,7 +45,9 @@ static int l_index(lua_State *L) {
     script_require_loading(L, "a field of particles");
     int components, channel = object->grid->find_field(object->grid, name, &components);
     if (channel < 0) script_raise(L);
-    field_push(L, field_grid_channel(script_memory(L), object->grid, channel, components));
+    const field *node = field_grid_channel(script_memory(L), object->grid, channel, components);
+    effect_note_reading(script_of(L)->effect, object->grid, name, node);
+    field_push(L, node);
     return 1;
 }
 

@@ -166,8 +166,10 @@ static int l_sequence_index(lua_State *L) {
         script_require_loading(L, "a grid of a sequence");
         int components, channel = sequence_channel(object->sequence, name, &components);
         if (channel < 0) script_raise(L);
-        field_push(L, field_grid_channel(script_memory(L), sequence_grid(object->sequence), channel,
-                                         components));
+        const field_grid *grid = sequence_grid(object->sequence);
+        const field *node = field_grid_channel(script_memory(L), grid, channel, components);
+        effect_note_reading(script_of(L)->effect, grid, name, node);
+        field_push(L, node);
     }
     return 1;
 }

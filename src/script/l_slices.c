@@ -191,8 +191,11 @@ static int l_index(lua_State *L) {
         lua_pushnumber(L, flow->time_step);
     else if (strcmp(name, "box") == 0)
         value_push_box(L, flow->grid->box);
-    else
-        field_push(L, perturbed(L, find_field(L, flow->pass, flow->grid, name), flow->offset));
+    else {
+        const field *node = perturbed(L, find_field(L, flow->pass, flow->grid, name), flow->offset);
+        effect_note_reading(script_of(L)->effect, flow->grid, name, node);
+        field_push(L, node);
+    }
     return 1;
 }
 

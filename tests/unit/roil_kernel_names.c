@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/memory.h"
+#include "pass/march/probe.h"
 #include "pass/ranges.h"
 #include "roil/view.h"
 #include "scene/voxels.h"
@@ -75,6 +76,9 @@ static void passes_say_what_their_shaders_declare(void **state) {
         const kernel_table table = {types[i]->names, files.items, files.count};
         check(*state, types[i]->name, &table);
     }
+    shader_files files = {.count = 0};
+    add_type(&files, &pass_probe_type); // of which no script makes any
+    check(*state, "probe", &(kernel_table){pass_probe_type.names, files.items, files.count});
 }
 
 static void providers_have_what_some_shader_asks_for(void **state) {

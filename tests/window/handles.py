@@ -160,6 +160,21 @@ class Handles(Case):
         self.assertRegex(self.read("puff.lua"), r"voxel_size = 0.1, position = \{0\.\d+, [-\d.e]+, 0\.2\}")
         live.quit()
 
+    def test_what_is_under_the_pointer(self):
+        live = self.stage()
+        live.keys("d")
+        left, top, right, bottom = live.widget(VIEW)
+        live.tool("mousemove", round((left + right) / 2), round((top + bottom) / 2))
+        at = live.expect(r"live: probed ([-\d.e]+),([-\d.e]+),([-\d.e]+) density ([1-9][\d.]*)").groups()
+        for value, wanted in zip(at, (0, 0, 1, 4)):  # near the middle of a ball that is thin
+            self.assertAlmostEqual(float(value), wanted, delta=0.3)
+        live.widget("probe")
+        live.tool("mousemove", round(left) + 20, round(top) + 20)
+        live.expect("live: probed 0,0,0 density 0")
+        live.keys("d")
+        live.wait_until(lambda: "probe" not in live.widgets(), "the picture alone")
+        live.quit()
+
     def test_without_perspective(self):
         live = self.shown("--set", "camera.pitch=20")
         before = live.middle("handle other.position")
