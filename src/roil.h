@@ -512,6 +512,11 @@ typedef struct roil_texture roil_texture; // 8-bit sRGB with alpha, on the devic
 roil_texture *roil_texture_create(roil *r, uint32_t width, uint32_t height, const uint8_t *rgba);
 void roil_texture_destroy(roil *r, roil_texture *t); // NULL is allowed
 
+// Reads a PNG picture and fits it into a size in pixels, 1 to 16384 each: it is made smaller and
+// cut to that aspect ratio. `rgba` must hold width * height * 4 bytes, rows from the top. Any
+// thread.
+bool roil_read_thumbnail(const char *png, uint32_t width, uint32_t height, uint8_t *rgba);
+
 typedef struct roil_vertex {
     float x, y;     // pixels from the top left
     float u, v;     // texture coordinates, 0 to 1

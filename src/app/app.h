@@ -100,6 +100,7 @@ void app_add_event(app_settings *s, const char *text); // "2.5 click 0.4 0.6"
     }
 // Checks that a file can be an effect. False with a message that says what it is instead.
 bool app_check_effect(const char *file);
+bool app_declares_effect(const char *file); // a Lua file that is no module and no sweep
 // Reads the presets and collects all settings of an effect. `from` may be NULL; else it must
 // outlive `s`.
 bool app_collect_settings(app_settings *s, roil *r, const char *effect, const roil_recipe *from);

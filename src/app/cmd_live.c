@@ -1,7 +1,10 @@
 // roil live EFFECT.lua ...: a window in which an effect is tuned while it runs.
 #include "app/device_options.h"
 #include "app/live.h"
+#include "app/opening.h"
+#include "app/recent.h"
 #include "app/restart.h"
+#include "app/start.h"
 #include "app/window.h"
 #include "base/error.h"
 #include "base/file.h"
@@ -24,6 +27,8 @@ typedef struct job {
     uint32_t width, height;
     double frame;
     int paused, hidden_panel;
+    opening chosen; // on the start page, or in the window, to be shown next
+    bool again;     // something was
 } job;
 
 // ---- options ----------------------------------------------------------------------------------
@@ -49,8 +54,7 @@ static int preview_of(const char *name) {
 }
 
 static bool live_check_options(const job *j, poptContext context) {
-    if (!j->file) return err_set("which effect? usage: roil live EFFECT.lua [options]");
-    const char *more = poptGetArg(context);
+    const char *more = j->file ? poptGetArg(context) : NULL;
     if (more) return err_set("'%s': one effect at a time", more);
     if (j->preview && preview_of(j->preview) < 0)
         return err_set("--preview '%s'; accepted: full, half, quarter", j->preview);
@@ -77,7 +81,7 @@ static bool live_parse(job *j, int argc, const char **argv, poptContext *context
          NULL},
         POPT_AUTOHELP POPT_TABLEEND};
     *context = poptGetContext("roil live", argc, argv, options, 0);
-    poptSetOtherOptionHelp(*context, "EFFECT.lua [options]");
+    poptSetOtherOptionHelp(*context, "[EFFECT.lua] [options]");
     int option;
     while ((option = poptGetNextOpt(*context)) > 0)
         if (!take_option(j, *context, option)) return false;
@@ -132,6 +136,7 @@ static int run_window(live *l, window *w, const job *j) {
         _exit(APP_DONE);
     }
     int status = done ? APP_DONE : app_fail_input();
+    if (done && l->effect && l->pictures > 0) recent_add(l->file, l->effect);
     write_back_close(l);
     undo_free(&l->undo);
     panel_destroy(l->panel);
@@ -174,8 +179,54 @@ static int run_device(live *l, window *w, job *j) {
     return status;
 }
 
+// What was chosen is shown with the settings of its recipe, and without those of the last effect.
+static void take_chosen(job *j) {
+    const roil_recipe *recipe = j->chosen.recipe;
+    app_free_settings(&j->settings);
+    j->settings = (app_settings){.sets = NULL};
+    j->file = j->chosen.file;
+    j->frame = recipe ? recipe->frame : (double)NAN;
+    j->after_hang = NULL;
+    for (size_t i = 0; recipe && i < recipe->setting_count; i++) {
+        app_settings *s = &j->settings;
+        MEM_RESERVE(s->sets, s->set_count + 1, s->set_capacity);
+        s->sets[s->set_count++] = recipe->settings[i];
+    }
+}
+
+// Opens a file that was dropped on the window; no file: the start page.
+static void open_next(live *l, const char *path) {
+    opening found = {.recipe = NULL};
+    if (path && !opening_find(roil_home(l->r), path, &found)) {
+        live_notice(l, "%s", roil_error());
+        return;
+    }
+    opening_free(l->next);
+    *l->next = found;
+    l->leaves = l->quit = true;
+}
+
+static void on_drop(void *user, const char *path) {
+    open_next(user, path);
+}
+
+void live_start_page(live *l) {
+    open_next(l, NULL);
+}
+
+// Goes on with what was opened in the window, if anything was.
+static void take_next(job *j, const live *l, opening *next) {
+    j->again = l->leaves;
+    if (!j->again) return;
+    opening_free(&j->chosen);
+    j->chosen = *next;
+    j->file = NULL;
+    if (j->chosen.file[0]) take_chosen(j);
+}
+
 static int live_run_window(job *j) {
-    live l = {.file = j->file, .start = j->frame};
+    opening next = {.recipe = NULL};
+    live l = {.file = j->file, .start = j->frame, .next = &next};
     l.time.frame = isfinite(j->frame) ? j->frame : 1;
     l.time.playing = !j->paused;
     if (!j->after_hang && !app_check_effect(j->file)) return app_fail_input();
@@ -186,8 +237,26 @@ static int live_run_window(job *j) {
     bool opened = window_open(&w, &l.session, strbuf_text(&title), (int)j->width, (int)j->height);
     strbuf_free(&title);
     if (!opened) return app_fail(APP_BAD_INPUT, "live: %s", roil_error());
+    window_on_drop(&w, on_drop, &l);
     int status = run_device(&l, &w, j);
     window_close(&w);
+    take_next(j, &l, &next);
+    return status;
+}
+
+// One window after the other: the start page, an effect, and what was opened in its window.
+static int run_windows(job *j) {
+    int status = APP_DONE;
+    do {
+        j->again = false;
+        if (!j->file) {
+            opening_free(&j->chosen);
+            status = start_choose(&j->device, (int)j->width, (int)j->height, &j->chosen);
+            if (status != APP_DONE || !j->chosen.file[0]) return status;
+            take_chosen(j);
+        }
+        status = live_run_window(j);
+    } while (status == APP_DONE && j->again);
     return status;
 }
 
@@ -195,8 +264,9 @@ int cmd_live(int argc, const char **argv) {
     job j = {.frame = (double)NAN};
     poptContext context;
     int status = live_parse(&j, argc, argv, &context)
-                     ? live_run_window(&j)
+                     ? run_windows(&j)
                      : app_fail(APP_BAD_USAGE, "live: %s", roil_error());
+    opening_free(&j.chosen);
     poptFreeContext(context);
     app_free_settings(&j.settings);
     return status;

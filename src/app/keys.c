@@ -185,6 +185,8 @@ static const live_key keys[] = {
     {GLFW_KEY_U, 0, "U", "list what was done", undo_list},
     {GLFW_KEY_W, 0, "W", "write what was changed into the file", write_back_key},
     {GLFW_KEY_S, GLFW_MOD_CONTROL, "Ctrl+S", "save a preset", save_preset},
+    {GLFW_KEY_O, GLFW_MOD_CONTROL, "Ctrl+O", "open another effect: the start page",
+     live_start_page},
     {GLFW_KEY_F1, 0, "F1", "this help", help},
     {GLFW_KEY_ESCAPE, 0, "Esc", "stop simulating; close what lies on top", close_top},
     {GLFW_KEY_Q, GLFW_MOD_CONTROL, "Ctrl+Q", "quit", key_quit},

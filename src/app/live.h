@@ -52,7 +52,9 @@ typedef struct live {
     bool dirty;        // the picture must be drawn again even if time stands still
     live_session session;
     bool help;
-    bool quit, shot;     // requested by a key
+    bool quit, shot; // requested by a key
+    bool leaves;     // for `next`, and where that has no file for the start page
+    struct opening *next;
     char notice[512];    // shown at the bottom of the window for a while
     double notice_until; // clock_seconds
     char broken_text[2048];
@@ -90,6 +92,8 @@ void live_break(live *l, const char *why); // draws no frame until something cha
 // Runs the window until the user quits. False with a message when nothing can be shown any more.
 typedef struct window window; // window.h
 bool live_loop(live *l, window *w);
+
+void live_start_page(live *l); // leaves the effect for it (cmd_live.c)
 
 // ---- changes.c: all that a hand changes, and undoing it -----------------------------------------
 

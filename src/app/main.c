@@ -14,7 +14,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { MOST_SOURCE = 1 << 20, MOST_SHOWN = 8 };
+enum { MOST_SHOWN = 8 };
 
 static const struct {
     const char *name;
@@ -74,20 +74,6 @@ static void print_help(FILE *out) {
     fprintf(out, "\n`roil COMMAND --help` lists the options of a command.\n");
 }
 
-// Returns whether a Lua file declares an effect, and is no module or sweep.
-static bool declares_effect(const char *path) {
-    void *text;
-    size_t size;
-    if (!file_read(path, MOST_SOURCE, &text, &size)) return false;
-    bool found = false;
-    for (const char *at = text; !found && (at = strstr(at, "effect")); at++) {
-        const char *next = at + 6 + strspn(at + 6, " ");
-        found = *next == '{' || *next == '(';
-    }
-    mem_free(text);
-    return found;
-}
-
 // Says how to begin where there are effects in the current folder.
 static void print_effects(FILE *out) {
     file_list here = {0};
@@ -95,7 +81,7 @@ static void print_effects(FILE *out) {
     size_t shown = 0;
     if (!file_glob("*.lua", &here)) return;
     for (size_t i = 0; i < here.count && shown < MOST_SHOWN; i++) {
-        if (!declares_effect(here.paths[i])) continue;
+        if (!app_declares_effect(here.paths[i])) continue;
         app_print(out, shown ? ", %s" : "\nEffects here: %s", here.paths[i]);
         if (!first) first = here.paths[i];
         shown++;

@@ -104,3 +104,16 @@ void app_free_settings(app_settings *s) {
     mem_free(s->all);
     *s = (app_settings){0};
 }
+
+bool app_declares_effect(const char *path) {
+    void *text;
+    size_t size;
+    if (!file_read(path, 1 << 20, &text, &size)) return false;
+    bool found = false;
+    for (const char *at = text; !found && (at = strstr(at, "effect")); at++) {
+        const char *next = at + 6 + strspn(at + 6, " ");
+        found = *next == '{' || *next == '(';
+    }
+    mem_free(text);
+    return found;
+}

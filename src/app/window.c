@@ -71,6 +71,18 @@ static void first_size(int *width, int *height) {
     *height = smaller(HEIGHT, SHARE * (float)most_height);
 }
 
+static void on_drop(GLFWwindow *handle, int count, const char **paths) {
+    const window *w = glfwGetWindowUserPointer(handle);
+    if (w->drop && count > 0) w->drop(w->drop_user, paths[0]);
+}
+
+void window_on_drop(window *w, void (*drop)(void *user, const char *path), void *user) {
+    w->drop = drop;
+    w->drop_user = user;
+    glfwSetWindowUserPointer(w->handle, w);
+    glfwSetDropCallback(w->handle, drop ? on_drop : NULL);
+}
+
 bool window_open(window *w, const live_session *s, const char *title, int width, int height) {
     *w = (window){.handle = NULL};
     if (!glfw_start()) return false;

@@ -8,6 +8,8 @@ struct window {
     int held[4];           // x, y, width, height when it was not maximised
     char title[256];
     bool busy; // the title says so
+    void (*drop)(void *user, const char *path);
+    void *drop_user;
 };
 
 // Opens a window. `width` 0: the session's size, or one that suits the display. False with a
@@ -24,4 +26,6 @@ typedef enum window_busy { WINDOW_GOES_ON, WINDOW_GIVES_UP, WINDOW_QUIT } window
 // Handles events while the device works on a frame, and shows the seconds that it has taken.
 // WINDOW_GIVES_UP: the user pressed Escape.
 window_busy window_wait_busy(window *w, double seconds);
+// Sets a callback for each file that is dropped on the window, or removes it (NULL).
+void window_on_drop(window *w, void (*drop)(void *user, const char *path), void *user);
 void window_wake(void *unused); // ends window_wait; any thread
