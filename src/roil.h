@@ -1,6 +1,6 @@
-// roil: a runtime for volumetric effects. This header and those that it includes, roil_slices.h and
-// roil_space.h, are the whole public interface of libroil. The program `roil` is built on it and
-// uses nothing else.
+// roil: a runtime for volumetric effects. This header and those that it includes at its end,
+// roil_slices.h, roil_space.h and roil_graph.h, are the whole public interface of libroil. The
+// program `roil` is built on it and uses nothing else.
 //
 //   roil *r = roil_create(&(roil_desc){0});
 //   roil_effect *e = r ? roil_load(r, "effects/explosion.lua", NULL, 0) : NULL;
@@ -658,5 +658,6 @@ void roil_free(void *text);             // NULL is allowed
 }
 #endif
 
+#include "roil_graph.h"  // passes and images, shown
 #include "roil_slices.h" // flows in slices, shown and changed
 #include "roil_space.h"  // where things are, and what moves them

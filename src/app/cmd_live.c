@@ -125,6 +125,7 @@ static int run_window(live *l, window *w, const job *j) {
     l->flow_tools = flow_tools_create();
     l->panel = panel_create();
     l->handles = handles_create();
+    l->graph = graph_view_create();
     take_session(l, j);
     bool done = live_loop(l, w);
     restart_disarm();
@@ -141,6 +142,7 @@ static int run_window(live *l, window *w, const job *j) {
     undo_free(&l->undo);
     panel_destroy(l->panel);
     handles_destroy(l->handles);
+    graph_view_destroy(l->graph, l->r);
     flow_tools_destroy(l->flow_tools, l->r);
     inspector_destroy(l->inspector, l->r);
     performance_destroy(l->performance);

@@ -26,6 +26,7 @@ struct inspector {
 
     char kept[MAX_NAME]; // what the effect was told to keep; "": nothing
     uint64_t reloads;    // when it was
+    bool all;            // it was told to keep all images
     char failure[512];   // why nothing is seen; "": it is
 
     roil_inspection how;
@@ -105,15 +106,22 @@ static bool prepare_again(live *l) {
            roil_advance(l->effect, l->time.frame); // else there is nothing to be seen
 }
 
-// Keeps an image. False, and a message in `failure`, when the effect cannot be drawn with it.
+// Keeps an image, or all while the graph shows them. False, and a message in `failure`, when the
+// effect cannot be drawn with it.
 static bool inspector_keep(live *l, const char *image) {
     inspector *p = l->inspector;
+    const bool all = l->session.graph;
     uint64_t reloads = roil_live_counts(l->follow).reloads;
-    if (p->reloads != reloads && !find_image(p, p->kept)) p->kept[0] = '\0'; // else kept on
+    bool reloaded = p->reloads != reloads;
+    if (reloaded && !find_image(p, p->kept)) p->kept[0] = '\0'; // else kept on
+    bool same = all ? p->all && !reloaded : !p->all && strcmp(p->kept, image) == 0;
     p->reloads = reloads;
-    if (strcmp(p->kept, image) == 0) return true;
+    p->all = all;
     str_copy(p->kept, sizeof p->kept, image);
+    if (same) return true;
     roil_keep_only(l->effect, image[0] ? image : NULL);
+    for (size_t i = 0; all && i < p->count; i++)
+        if (!p->images[i].culled) roil_keep(l->effect, p->images[i].name);
     return prepare_again(l) || !str_copy(p->failure, sizeof p->failure, roil_error());
 }
 

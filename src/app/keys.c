@@ -79,6 +79,10 @@ static void key_probe(live *l) {
     l->session.probe = !l->session.probe;
 }
 
+static void key_graph(live *l) {
+    l->session.graph = !l->session.graph;
+}
+
 static void key_ground(live *l) {
     l->session.ground = !l->session.ground;
 }
@@ -122,6 +126,8 @@ static void close_top(live *l) {
         l->session.slices = false;
     else if (l->session.inspector)
         l->session.inspector = false;
+    else if (l->session.graph)
+        l->session.graph = false;
     else
         l->session.performance = false;
 }
@@ -176,6 +182,7 @@ static const live_key keys[] = {
     {GLFW_KEY_V, 0, "V", "picture at full, half, quarter size", key_preview},
     {GLFW_KEY_TAB, 0, "Tab", "show the picture alone", panels},
     {GLFW_KEY_I, 0, "I", "inspect the images of passes", key_inspect},
+    {GLFW_KEY_N, 0, "N", "the graph: passes, their times and images", key_graph},
     {GLFW_KEY_S, 0, "S", "see, push and capture the flow of slices", slices},
     {GLFW_KEY_P, 0, "P", "performance", performance_key},
     {GLFW_KEY_F12, 0, "F12", "save the picture as PNG", shot},

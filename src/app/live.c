@@ -252,6 +252,7 @@ static void draw_interface(live *l, const loop *p, const layout *at, uint32_t wi
                 l->session.panel = ((float)width - middle) / ui_scale();
             panel_draw(l, at->panel);
         }
+        graph_view_draw(l);
         inspector_draw(l);
         flow_tools_draw(l);
         performance_draw(l);
@@ -298,7 +299,8 @@ static bool loop_show(live *l, loop *p, uint32_t width, uint32_t height) {
 static double time_to_sleep(const live *l, const loop *p, double now) {
     bool drawing = can_draw(l);
     if (p->minimized) return LONG;
-    if (ui_pending() || p->awake_frames > 0 || (drawing && l->dirty)) return 0;
+    if (ui_pending() || p->awake_frames > 0 || (drawing && l->dirty) || graph_view_busy(l))
+        return 0;
     double most = LONG;
     if (drawing && l->time.playing) {
         double rate = l->time.fps * fabs(l->time.speed);
@@ -345,6 +347,7 @@ bool live_loop(live *l, window *w) {
         playing = l->time.playing;
         if (p.drawn) inspector_update(l);
         if (p.drawn) flow_tools_update(l);
+        if (p.drawn) graph_view_update(l);
         if (l->shot) take_shot(l, &p);
         ui_begin();
         undo_frame(&l->undo, ui_held());

@@ -21,8 +21,9 @@ typedef struct live_session { // what is restored at the next start; session.c
     float panel; // width of the panel, units
     bool panel_hidden, performance, inspector, slices;
     bool handles, ground, probe; // are shown over the picture
-    char image[96];              // shown by the inspector
-    int preview;                 // index in live_previews; -1: never chosen
+    bool graph;
+    char image[96]; // shown by the inspector
+    int preview;    // index in live_previews; -1: never chosen
 } live_session;
 
 typedef struct performance performance; // performance.c
@@ -30,6 +31,7 @@ typedef struct inspector inspector;     // inspector.c
 typedef struct flow_tools flow_tools;   // flow_tools.c
 typedef struct panel panel;             // panel.c
 typedef struct handles handles;         // handles.c
+typedef struct graph_view graph_view;   // graph_view.c
 typedef struct write_back write_back;   // write_back.c
 
 typedef struct live_probe { // what was found under the pointer last; probe.c
@@ -66,6 +68,7 @@ typedef struct live {
     flow_tools *flow_tools;
     panel *panel;
     handles *handles;
+    graph_view *graph;
     undo undo;
     bool undo_list;   // is shown
     bool awaits_file; // a step wrote files, which are not loaded yet; then on to `goal`
@@ -150,7 +153,8 @@ void timeline_draw(live *l, ui_rect where); // timeline_bar.c
 
 panel *panel_create(void);
 void panel_destroy(panel *p);
-void panel_draw(live *l, ui_rect where); // parameters, palettes, curves, passes, presets
+void panel_draw(live *l, ui_rect where);      // parameters, palettes, curves, passes, presets
+void panel_find(live *l, const char *search); // shows what matches
 // Draw the editor of a palette or a curve. True when the value changed.
 bool palette_draw(live *l, const char *name);
 bool curve_draw(live *l, const char *name);
@@ -160,6 +164,8 @@ void performance_destroy(performance *p);
 // Adds a frame of the effect that was drawn. `cpu` and `interval` are seconds.
 void performance_add(performance *p, roil_effect *e, double cpu, double interval);
 void performance_draw(live *l);
+// Returns the milliseconds that a pass took in the last frame; below 0: not known.
+double performance_time(const performance *p, const char *pass);
 double performance_rate(const performance *p); // recent frames per second; 0: unknown
 
 inspector *inspector_create(void);
@@ -167,6 +173,12 @@ void inspector_destroy(inspector *p, roil *r);
 // Draws the image into its texture. Call it after the effect and before the interface is drawn.
 void inspector_update(live *l);
 void inspector_draw(live *l);
+
+graph_view *graph_view_create(void);
+void graph_view_destroy(graph_view *g, roil *r);
+void graph_view_update(live *l);     // like inspector_update
+bool graph_view_busy(const live *l); // it has pictures to make
+void graph_view_draw(live *l);       // the window "Graph"
 
 flow_tools *flow_tools_create(void);
 void flow_tools_destroy(flow_tools *t, roil *r);

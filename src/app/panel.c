@@ -1,6 +1,7 @@
 // The panel: all controls of the effect in sections, with a search.
 #include "app/panel_parts.h"
 #include "base/memory.h"
+#include "base/str.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -161,6 +162,11 @@ static void draw_list(live *l, ui_rect where) {
     else if (!p->model.row_count)
         ui_text_color(UI_DIM, "Nothing matches \"%s\".", p->search);
     ui_panel_end();
+}
+
+void panel_find(live *l, const char *search) {
+    str_copy(l->panel->search, sizeof l->panel->search, search);
+    l->session.panel_hidden = false;
 }
 
 void panel_draw(live *l, ui_rect where) {

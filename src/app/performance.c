@@ -6,6 +6,7 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 // Units.
 static const float WIDTH = 440, HEIGHT = 532; // of the window
@@ -15,7 +16,8 @@ static const float IDLE_MS = 3000;   // between pictures: nothing wanted to be d
 
 struct performance {
     history past;
-    roil_time times[HISTORY_PASSES];
+    roil_time times[HISTORY_PASSES]; // of the last frame
+    size_t time_count;
 };
 
 performance *performance_create(void) {
@@ -28,7 +30,14 @@ void performance_destroy(performance *p) {
 
 void performance_add(performance *p, roil_effect *e, double cpu, double interval) {
     size_t count = roil_times(e, p->times, HISTORY_PASSES);
+    p->time_count = count < HISTORY_PASSES ? count : HISTORY_PASSES;
     history_add(&p->past, p->times, count, cpu, interval);
+}
+
+double performance_time(const performance *p, const char *pass) {
+    for (size_t i = 0; i < p->time_count; i++)
+        if (strcmp(p->times[i].pass, pass) == 0) return p->times[i].milliseconds;
+    return -1;
 }
 
 double performance_rate(const performance *p) {

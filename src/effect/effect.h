@@ -239,6 +239,7 @@ const effect_control *effect_get_control(const effect *e, size_t index);
 const effect_control *effect_find_control(effect *e, const char *name); // NULL: suggests
 // Where the script makes what the control belongs to. NULL: that is not known.
 const effect_place *effect_control_place(const effect *e, const effect_control *c);
+const effect_place *effect_pass_place(const effect *e, const pass *p); // NULL: not known
 // The palette or curve of a control of that kind.
 const palette *effect_control_palette(const effect_control *c);
 const curve *effect_control_curve(const effect_control *c);

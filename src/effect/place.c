@@ -58,3 +58,7 @@ const effect_place *effect_control_place(const effect *e, const effect_control *
     }
     return own ? own : find_place(e, ((const control *)c)->owner);
 }
+
+const effect_place *effect_pass_place(const effect *e, const pass *p) {
+    return find_place(e, p);
+}

@@ -195,6 +195,23 @@ size_t graph_order(const graph *g, const char **out, size_t capacity) {
     return g->order_count;
 }
 
+static graph_pass_info info_of(const graph_node_pass *p) {
+    return (graph_pass_info){p->name, p->reads, p->writes, p->read_count, p->write_count, p->live};
+}
+
+size_t graph_passes(const graph *g, graph_pass_info *out, size_t capacity) {
+    size_t count = 0;
+    if (!g->compiled) return 0;
+    for (size_t i = 0; i < g->order_count; i++, count++)
+        if (count < capacity) out[count] = info_of(&g->passes[g->order[i]]);
+    for (size_t i = 0; i < g->pass_count; i++) {
+        if (g->passes[i].live) continue;
+        if (count < capacity) out[count] = info_of(&g->passes[i]);
+        count++;
+    }
+    return count;
+}
+
 bool graph_shares_memory(const graph *g, graph_image a, graph_image b) {
     const graph_slot *slot = slot_of(g, a);
     return slot && slot == slot_of(g, b);

@@ -94,6 +94,14 @@ graph_image graph_find_image(const graph *g, const char *name);           // zer
 size_t graph_images(const graph *g, graph_image *out, size_t capacity);
 // Lists the names of the passes that run, in order. Returns their number.
 size_t graph_order(const graph *g, const char **out, size_t capacity);
+typedef struct graph_pass_info { // lives as long as the graph
+    const char *name;
+    const uint32_t *reads, *writes; // places in the list of graph_images
+    size_t read_count, write_count;
+    bool runs; // else it is culled
+} graph_pass_info;
+// Lists all passes after graph_compile: those that run, in order, and then the others.
+size_t graph_passes(const graph *g, graph_pass_info *out, size_t capacity);
 bool graph_shares_memory(const graph *g, graph_image a, graph_image b);
 // For the writer of a kept image, while it records: returns whether the image still holds what the
 // writer wrote last.
