@@ -5,8 +5,11 @@
 #include "app/live.h"
 #include "app/restart.h"
 #include "base/clock.h"
+#include "base/file.h"
 #include "base/log.h"
+#include "base/str.h"
 #include <stdio.h>
+#include <string.h>
 
 static const float WIDTH = 260, HEIGHT = 320; // units
 
@@ -58,6 +61,38 @@ void live_reset(live *l, const char *name) {
     settle(l);
 }
 
+// ---- files --------------------------------------------------------------------------------------
+
+bool live_write(live *l, const char *path, const char *label, bool (*write)(live *l, void *user),
+                void *user) {
+    char root[PATH_CAP];
+    path_folder(root, l->file);
+    file_change *c = file_change_begin(root, path);
+    bool done = c && write(l, user) && file_change_end(c);
+    if (done) {
+        undo_note_file(&l->undo, c, label);
+        log_write(LOG_DEBUG, "live: wrote %s", path);
+    } else {
+        live_notice(l, "%s", roil_error());
+        log_write(LOG_DEBUG, "live: %s", roil_error());
+        file_change_free(c);
+    }
+    return done;
+}
+
+static bool write_preset(live *l, void *name) {
+    return roil_write_preset(l->effect, name);
+}
+
+bool live_write_preset(live *l, char *name) {
+    const char *file = path_name(l->file);
+    char path[PATH_CAP], label[96];
+    int stem = (int)(strlen(file) - (str_ends_with(file, ".lua") ? strlen(".lua") : 0));
+    snprintf(path, sizeof path, "%.*s.presets/%s.lua", stem, file, name);
+    snprintf(label, sizeof label, "saved preset %.60s", name);
+    return live_write(l, path, label, write_preset, name);
+}
+
 // ---- undoing ------------------------------------------------------------------------------------
 
 static void set_values(live *l, const undo_step *step, bool back) {
@@ -74,7 +109,12 @@ static void set_values(live *l, const undo_step *step, bool back) {
 
 // Takes a step back, or again. False: a file is another one now, and the step stays.
 static bool take_step(live *l, const undo_step *step, bool back) {
-    if (!step->written) {
+    if (step->file) {
+        if (!file_change_apply(step->file, back)) {
+            live_notice(l, "%s", roil_error());
+            return false;
+        }
+    } else if (!step->written) {
         set_values(l, step, back);
     } else if (!(back ? roil_edits_undo : roil_edits_write)(step->written)) {
         live_notice(l, "%s", roil_error());

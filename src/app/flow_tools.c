@@ -138,17 +138,20 @@ static void draw_kind(flow_tools *t) {
     t->line[0] = '\0';
 }
 
-static void flow_capture(live *l, flow_tools *t) {
-    float scale[2];
-    char file[64];
+static bool write_capture(live *l, void *scale) {
+    const flow_tools *t = l->flow_tools;
     const roil_slices_square where = {
         t->view.flow, t->view.slice, {t->middle[0], t->middle[1]}, t->side};
-    if (!roil_slices_capture(l->effect, &where, t->name, scale)) {
-        live_notice(l, "%s", roil_error());
-        log_write(LOG_DEBUG, "live: %s", roil_error());
-        return;
-    }
+    return roil_slices_capture(l->effect, &where, t->name, scale);
+}
+
+static void flow_capture(live *l, flow_tools *t) {
+    float scale[2];
+    char file[sizeof t->name + 8], path[sizeof file + 16], label[sizeof file + 16];
     snprintf(file, sizeof file, "%s.exr", t->name);
+    snprintf(path, sizeof path, "templates/%s", file);
+    snprintf(label, sizeof label, "captured %s", t->name);
+    if (!live_write(l, path, label, write_capture, scale)) return;
     live_notice(l, "Saved templates/%s", file);
     log_write(LOG_DEBUG, "live: captured templates/%s, %.3g m/s, %.3g m^2/s^2", file,
               (double)scale[0], (double)scale[1]);

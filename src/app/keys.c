@@ -144,10 +144,7 @@ static void save_preset(live *l) {
         for (size_t i = 0; i < count && i < COUNT_OF(names); i++)
             taken = taken || strcmp(names[i], name) == 0;
     }
-    if (!roil_write_preset(l->effect, name)) {
-        live_notice(l, "%s", roil_error());
-        return;
-    }
+    if (!live_write_preset(l, name)) return;
     log_write(LOG_DEBUG, "live: wrote preset %s", name);
     live_notice(l, "Saved preset \"%s\"", name);
 }

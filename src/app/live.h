@@ -103,6 +103,11 @@ void live_start_page(live *l); // leaves the effect for it (cmd_live.c)
 // Sets a control for the user and has the frame drawn again. A failure is shown as a notice.
 void live_set(live *l, const char *name, const char *value);
 void live_reset(live *l, const char *name); // NULL: all controls
+// Has `write` make or replace a file below the effect's folder, as a step that can be undone.
+// False, and a notice, when that fails.
+bool live_write(live *l, const char *path, const char *label, bool (*write)(live *l, void *user),
+                void *user);
+bool live_write_preset(live *l, char *name); // in the same way
 void live_undo(live *l);
 void live_redo(live *l);
 void changes_take_over(live *l); // call it when the effect was loaded anew

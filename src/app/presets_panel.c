@@ -89,10 +89,8 @@ static void preset_save(live *l, preset_list *list) {
     }
     list->asked = false;
     list->next_look = 0;
-    if (roil_write_preset(l->effect, list->name))
+    if (live_write_preset(l, list->name))
         live_notice(l, "saved preset %s, without the camera", list->name);
-    else
-        live_notice(l, "%s", roil_error());
 }
 
 static void draw_saving(live *l, preset_list *list) {

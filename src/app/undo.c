@@ -24,6 +24,7 @@ static void free_step(undo_step *s) {
     }
     mem_free(s->values);
     roil_edits_free(s->written);
+    file_change_free(s->file);
     *s = (undo_step){0};
 }
 
@@ -64,7 +65,9 @@ static void name_step(undo_step *s) {
 
 // A wheel that is turned holds nothing down.
 static bool continues(undo *u, const char *name, double now) {
-    if (u->done == 0 || u->done < u->count || u->steps[u->done - 1].written) return false;
+    if (u->done == 0 || u->done < u->count || u->steps[u->done - 1].written ||
+        u->steps[u->done - 1].file)
+        return false;
     bool wheel = strncmp(name, camera, sizeof camera - 1) == 0 && now - u->last_note < PAUSE;
     return u->open || (wheel && find(&u->steps[u->done - 1], name));
 }
@@ -121,6 +124,13 @@ void undo_note_written(undo *u, roil_edits *written, const char *label) {
 
 void undo_add_value(undo *u, const char *name, const char *before) {
     set_value(&u->steps[u->done - 1], name, before, NULL);
+}
+
+void undo_note_file(undo *u, file_change *file, const char *label) {
+    undo_step *s = add_step(u);
+    s->file = file;
+    str_copy(s->label, sizeof s->label, label);
+    u->open = false;
 }
 
 undo_step *undo_back(undo *u) {

@@ -1,6 +1,7 @@
 // What hands have done in the live window, step by step, to be undone and done again. Needs no
 // window. A step holds the values that one gesture set, or what was written into files.
 #pragma once
+#include "app/file_change.h"
 #include "roil.h"
 
 enum { UNDO_STEPS = 10000 }; // that are kept; the oldest are forgotten
@@ -15,6 +16,7 @@ typedef struct undo_step {
     undo_value *values;
     size_t count, capacity;
     roil_edits *written; // and put into files; NULL: nothing was
+    file_change *file;   // that was made: a preset, a template; NULL: none was
 } undo_step;
 
 typedef struct undo { // zero at first
@@ -36,6 +38,8 @@ void undo_label(undo *u, const char *format, ...) __attribute__((format(printf, 
 // it became the script's own.
 void undo_note_written(undo *u, roil_edits *written, const char *label);
 void undo_add_value(undo *u, const char *name, const char *before); // that is in it
+// Adds a step: a file, which belongs to it from now on, was made or replaced.
+void undo_note_file(undo *u, file_change *file, const char *label);
 undo_step *undo_back(undo *u);  // the step to be undone now; NULL: there is none
 undo_step *undo_again(undo *u); // the step to be done again now; NULL: there is none
 void undo_free(undo *u);

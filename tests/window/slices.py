@@ -67,6 +67,15 @@ class Slices(Case):
         live.type("mine")
         live.click_on("slices/capture")
         live.expect(r"live: captured templates/mine\.exr")
+        with open(self.path("templates/mine.exr"), "rb") as f:
+            captured = f.read()
+        live.keys("Escape", "ctrl+z")  # it is a step like others; Escape ends typing
+        live.expect("live: undid captured mine")
+        self.assertFalse(os.path.exists(self.path("templates/mine.exr")))
+        live.keys("ctrl+y")
+        live.expect("live: redid captured mine")
+        with open(self.path("templates/mine.exr"), "rb") as f:
+            self.assertEqual(f.read(), captured)
         self.assertTrue(os.path.getsize(self.path("templates/mine.exr")) > 1000)
         live.widget("slices/mine.exr")  # its icon
         live.click(*self.place(live, 0.5, 0.7))

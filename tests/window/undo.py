@@ -131,6 +131,37 @@ class Undo(Case):
         self.assertEqual(self.read("puff.lua"), PUFF.replace('"thickness", 4', '"thickness", 7.5'))
         live.quit()
 
+    def test_saved_presets(self):
+        self.write("puff.presets/mine.lua", "return { thickness = 12 }")
+        live = self.live("--set", "size=2")
+        live.expect("live: shown")
+        self.slide(live, "thickness", 0.2, 0.75)
+        live.keys("ctrl+s")
+        live.expect("live: wrote preset preset-1")
+        saved = self.read("puff.presets/preset-1.lua")
+        self.assertIn("thickness", saved)
+        live.click_on("preset name")
+        live.type("mine")
+        live.click(*live.middle("preset save"))
+        live.click(*live.middle("preset save"))  # yes, replace it
+        live.expect("live: wrote puff.presets/mine.lua")
+        self.assertNotEqual(self.read("puff.presets/mine.lua"), "return { thickness = 12 }")
+        live.keys("Escape")  # typed no more
+        live.keys("ctrl+z")
+        live.expect("live: undid saved preset mine")
+        self.assertEqual(self.read("puff.presets/mine.lua"), "return { thickness = 12 }")
+        live.keys("ctrl+z")
+        live.expect("live: undid saved preset preset-1")
+        self.assertFalse(os.path.exists(self.path("puff.presets/preset-1.lua")))
+        live.keys("ctrl+y")
+        live.expect("live: redid saved preset preset-1")
+        self.assertEqual(self.read("puff.presets/preset-1.lua"), saved)
+        self.write("puff.presets/preset-1.lua", "return { size = 3 }")  # by somebody else
+        live.keys("ctrl+z")
+        live.expect("live: notice: .*preset-1.lua has changed meanwhile; it stays as it is")
+        self.assertEqual(self.read("puff.presets/preset-1.lua"), "return { size = 3 }")
+        live.quit()
+
     def test_many_at_random(self):
         """Whatever was done in whatever order: undone to the end, all is as it was."""
         self.write("puff.presets/thick.lua", "return { thickness = 12, glow = false }")
