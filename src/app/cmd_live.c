@@ -102,6 +102,7 @@ static bool on_waiting(void *user, double seconds) {
 
 static void on_key(void *user, int key, int mods, bool again) {
     bool types = !(mods & GLFW_MOD_CONTROL) && key < GLFW_KEY_F1; // or moves in what is typed
+    if (key == GLFW_KEY_ESCAPE && ui_walks() && !ui_types()) ui_walk(NULL);
     if (!(types && ui_wants_keys())) live_press(user, key, mods, again);
 }
 

@@ -6,8 +6,8 @@
 #include <stdio.h>
 
 // Units.
-static const float PADDING = 24, ROW = 26, BETWEEN = 40, GAP = 14, CAP = 14, HEADING = 30,
-                   BLOCK_GAP = 12;
+static const float PADDING = 20, ROW = 24, BETWEEN = 40, GAP = 14, CAP = 14, HEADING = 26,
+                   BLOCK_GAP = 8;
 static const float EDGE = 12; // of PADDING, what a card has itself
 
 typedef struct entry {

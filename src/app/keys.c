@@ -99,6 +99,30 @@ static void shot(live *l) {
     l->shot = true;
 }
 
+static void contrast(live *l) {
+    l->session.contrast = !l->session.contrast;
+}
+
+// In steps of a tenth.
+static void resize(live *l, float tenths) {
+    float scale = roundf(l->session.scale * 10 + tenths) / 10;
+    l->session.scale = fminf(fmaxf(scale, 0.5f), 3);
+    live_notice(l, "Interface at %.0f %%", (double)l->session.scale * 100);
+}
+
+static void larger(live *l) {
+    resize(l, 1);
+}
+
+static void smaller(live *l) {
+    resize(l, -1);
+}
+
+static void walk(live *l) {
+    ui_walk(ui_walks() || l->session.panel_hidden ? NULL : "panel");
+    if (ui_walks()) live_notice(l, "Arrows, Tab and Enter use the panel; Esc or F6 leaves it");
+}
+
 static void key_quit(live *l) {
     l->quit = true;
 }
@@ -191,6 +215,10 @@ static const live_key keys[] = {
     {GLFW_KEY_S, GLFW_MOD_CONTROL, "Ctrl+S", "save a preset", save_preset},
     {GLFW_KEY_O, GLFW_MOD_CONTROL, "Ctrl+O", "open another effect: the start page",
      live_start_page},
+    {GLFW_KEY_F2, 0, "F2", "high contrast", contrast},
+    {GLFW_KEY_F6, 0, "F6", "use the panel by keys", walk},
+    {GLFW_KEY_EQUAL, GLFW_MOD_CONTROL, "Ctrl+=", "larger letters and widgets", larger},
+    {GLFW_KEY_MINUS, GLFW_MOD_CONTROL, "Ctrl+-", "smaller ones", smaller},
     {GLFW_KEY_F1, 0, "F1", "this help", help},
     {GLFW_KEY_ESCAPE, 0, "Esc", "stop simulating; close what lies on top", close_top},
     {GLFW_KEY_Q, GLFW_MOD_CONTROL, "Ctrl+Q", "quit", key_quit},

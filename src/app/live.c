@@ -339,7 +339,8 @@ bool live_loop(live *l, window *w) {
             playing = false;
             continue;
         }
-        ui_set_scale(window_scale(w));
+        ui_set_scale(window_scale(w) * l->session.scale);
+        ui_set_contrast(l->session.contrast);
         layout at = lay_out(l, width, height);
         loop_resize(l, &p, now);
         loop_follow_files(l, &p);

@@ -21,7 +21,8 @@ typedef struct live_session { // what is restored at the next start; session.c
     float panel; // width of the panel, units
     bool panel_hidden, performance, inspector, slices;
     bool handles, ground, probe; // are shown over the picture
-    bool graph;
+    bool graph, contrast;
+    float scale;    // of the interface, as the user has it: 0.5 to 3
     char image[96]; // shown by the inspector
     int preview;    // index in live_previews; -1: never chosen
 } live_session;

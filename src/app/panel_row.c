@@ -246,7 +246,8 @@ void panel_shape_buttons(live *l, const char *name) {
     if (ui_small_button("Copy as Lua")) panel_copy_lua(l, name);
     ui_same_line();
     ui_disable_begin(!c.moved);
-    if (ui_small_button("Write into the file")) write_back_ask(l, name);
+    if (ui_small_button("Write")) write_back_ask(l, name);
     ui_disable_end();
+    ui_tooltip("writes it into the file");
     ui_gap(10 * ui_scale());
 }

@@ -64,13 +64,15 @@ static void session_read_json(live_session *s, const json_t *root) {
     s->ground = flag(root, "ground");
     s->probe = flag(root, "probe");
     s->graph = flag(root, "graph");
+    s->contrast = flag(root, "contrast");
+    s->scale = (float)number(root, "scale", 0.5, 3, 1);
     s->preview = whole(root, "preview", -1, LIVE_PREVIEWS - 1, -1);
     const char *image = json_string_value(json_object_get(root, "image"));
     if (!image || !str_copy(s->image, sizeof s->image, image)) s->image[0] = '\0';
 }
 
 void session_load(live_session *s) {
-    *s = (live_session){.panel = PANEL, .preview = -1};
+    *s = (live_session){.panel = PANEL, .preview = -1, .scale = 1};
     char path[PATH_CAP];
     void *text;
     size_t size;
@@ -88,11 +90,13 @@ void session_load(live_session *s) {
 void session_save(const live_session *s) {
     char path[PATH_CAP];
     json_t *root = json_pack(
-        "{s:i, s:i, s:i, s:i, s:b, s:f, s:b, s:b, s:b, s:b, s:b, s:b, s:b, s:b, s:s, s:i}", "x",
-        s->x, "y", s->y, "width", s->width, "height", s->height, "maximized", s->maximized, "panel",
-        (double)s->panel, "panel_hidden", s->panel_hidden, "performance", s->performance,
+        "{s:i, s:i, s:i, s:i, s:b, s:f, s:b, s:b, s:b, s:b, s:b, s:b, s:b, s:b, s:b, s:f, s:s, "
+        "s:i}",
+        "x", s->x, "y", s->y, "width", s->width, "height", s->height, "maximized", s->maximized,
+        "panel", (double)s->panel, "panel_hidden", s->panel_hidden, "performance", s->performance,
         "inspector", s->inspector, "slices", s->slices, "handles", s->handles, "ground", s->ground,
-        "probe", s->probe, "graph", s->graph, "image", s->image, "preview", s->preview);
+        "probe", s->probe, "graph", s->graph, "contrast", s->contrast, "scale", (double)s->scale,
+        "image", s->image, "preview", s->preview);
     char *text = root ? json_dumps(root, JSON_INDENT(2) | JSON_REAL_PRECISION(6)) : NULL;
     if (text &&
         (!session_file(path, sizeof path, "session.json") || !file_write(path, text, strlen(text))))

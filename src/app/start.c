@@ -30,7 +30,8 @@ typedef struct page {
     card *cards;
     size_t count, capacity;
     char path[PATH_CAP], name[64], message[1024];
-    bool quit, enter;
+    bool quit, enter, contrast;
+    float scale;
     opening *out;
 } page;
 
@@ -224,7 +225,8 @@ static bool run_page(page *p, window *w) {
         awake = woken || ui_pending() ? AWAKE : awake - (awake > 0);
         window_pixels(w, &width, &height);
         if (!width) continue;
-        ui_set_scale(window_scale(w));
+        ui_set_scale(window_scale(w) * p->scale);
+        ui_set_contrast(p->contrast);
         if (!draw_page(p, width, height)) return false;
     }
     return true;
@@ -251,6 +253,8 @@ int start_choose(const app_device *device, int width, int height, opening *out) 
     page p = {.out = out};
     *out = (opening){.recipe = NULL};
     session_load(&session);
+    p.scale = session.scale;
+    p.contrast = session.contrast;
     if (!window_open(&w, &session, "roil", width, height))
         return app_fail(APP_BAD_INPUT, "live: %s", roil_error());
     int status = run_device(&p, &w, device);

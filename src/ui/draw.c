@@ -11,6 +11,15 @@ static const rgb colors[UI_COLOR_COUNT] = {
     [UI_GOOD] = {132, 182, 110}, [UI_WARNING] = {228, 180, 76}, [UI_ERROR] = {232, 102, 84},
     [UI_PANEL] = {36, 36, 36},   [UI_FIELD] = {24, 24, 24},     [UI_LINE] = {58, 58, 58},
 };
+// The same for those who see little contrast: white, and lines around all that can be used.
+static const rgb contrast_colors[UI_COLOR_COUNT] = {
+    [UI_TEXT] = {255, 255, 255}, [UI_DIM] = {214, 214, 214},    [UI_ACCENT] = {255, 200, 0},
+    [UI_GOOD] = {130, 255, 130}, [UI_WARNING] = {255, 222, 60}, [UI_ERROR] = {255, 130, 120},
+    [UI_PANEL] = {0, 0, 0},      [UI_FIELD] = {0, 0, 0},        [UI_LINE] = {150, 150, 150},
+};
+enum { CONTRAST_FLOOR = 60 }; // greys below it are those of what lies behind text
+static bool contrast;
+
 static const rgb accent_hover = {250, 160, 80}, accent_deep = {138, 86, 40},
                  accent_pale = {150, 120, 94};
 
@@ -21,8 +30,16 @@ static uint32_t packed(rgb c, float alpha) {
            (uint32_t)lroundf(fminf(fmaxf(alpha, 0), 1) * 255) << 24;
 }
 
+void draw_set_contrast(bool on) {
+    contrast = on;
+}
+
+bool draw_contrast(void) {
+    return contrast;
+}
+
 uint32_t ui_rgba(ui_color color, float alpha) {
-    return packed(colors[color], alpha);
+    return packed((contrast ? contrast_colors : colors)[color], alpha);
 }
 
 uint32_t ui_pack(const float linear[3], float alpha) {
@@ -36,7 +53,7 @@ uint32_t ui_pack(const float linear[3], float alpha) {
 }
 
 uint32_t draw_grey(int level) {
-    uint8_t v = (uint8_t)level;
+    uint8_t v = (uint8_t)(contrast && level < CONTRAST_FLOOR ? level / 3 : level);
     return packed((rgb){v, v, v}, 1);
 }
 
@@ -95,7 +112,9 @@ void draw_bar(ui_rect area, double value, const number_range *range, const char 
     ui_fill(area, draw_enabled(ui_rgba(UI_FIELD, 1)), 4 * s);
     if (number_is_bounded(range))
         bar_share(area, (float)number_to_share(range, value), hovered, held);
-    else if (hovered || held)
+    if (contrast)
+        ui_frame(area, ui_rgba(held ? UI_ACCENT : UI_LINE, 1), 4 * s, s);
+    else if (!number_is_bounded(range) && (hovered || held))
         ui_frame(area, held ? ui_rgba(UI_ACCENT, 1) : draw_grey(GREY_RAISED_ACTIVE), 4 * s, s);
     char text[64];
     number_text(range, value, text, sizeof text);

@@ -56,6 +56,8 @@ enum { // greys of the style, 0 to 255: neutral, so that they do not affect the 
     GREY_RAISED_ACTIVE = GREY_RAISED_HOVER + GREY_STEP,
     GREY_POPUP = 44,
 };
+void draw_set_contrast(bool on);
+bool draw_contrast(void);
 uint32_t draw_grey(int level);
 uint32_t draw_enabled(uint32_t color); // the colour, paler where widgets are disabled
 // Draws one line within the area, shortened with "...". `align`: 0 left to 1 right.

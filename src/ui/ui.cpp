@@ -44,7 +44,7 @@ void set_colors(ImVec4 *c) {
         {ImGuiCol_TextDisabled, ui_rgba(UI_DIM, 1)},
         {ImGuiCol_WindowBg, ui_rgba(UI_PANEL, 1)},
         {ImGuiCol_PopupBg, draw_grey(GREY_POPUP)},
-        {ImGuiCol_Border, draw_grey(14)},
+        {ImGuiCol_Border, draw_contrast() ? ui_rgba(UI_LINE, 1) : draw_grey(14)},
         {ImGuiCol_TitleBg, draw_grey(GREY_POPUP)},
         {ImGuiCol_TitleBgActive, draw_grey(50)},
         {ImGuiCol_ScrollbarBg, IM_COL32(0, 0, 0, 0)},
@@ -164,15 +164,39 @@ void ui_close(void) {
     ui = state();
 }
 
+static void set_style(void) {
+    ImGuiStyle style;
+    set_sizes(style);
+    if (draw_contrast()) style.FrameBorderSize = 1;
+    style.ScaleAllSizes(ui.scale);
+    set_colors(style.Colors);
+    ImGui::GetStyle() = style;
+}
+
 void ui_set_scale(float scale) {
     if (scale == ui.scale) return;
     ui.scale = scale;
-    ImGuiStyle style;
-    set_sizes(style);
-    style.ScaleAllSizes(scale);
-    set_colors(style.Colors);
-    ImGui::GetStyle() = style;
+    set_style();
     load_atlas();
+}
+
+void ui_set_contrast(bool on) {
+    if (on == draw_contrast()) return;
+    draw_set_contrast(on);
+    set_style();
+}
+
+void ui_walk(const char *panel) {
+    ui.walks = panel != nullptr;
+    if (panel) ImGui::SetWindowFocus(panel);
+}
+
+bool ui_walks(void) {
+    return ui.walks;
+}
+
+bool ui_types(void) {
+    return ImGui::GetIO().WantTextInput;
 }
 
 float ui_scale(void) {
@@ -212,11 +236,12 @@ static void take_input(ImGuiIO &io) {
 
 void ui_begin(void) {
     ImGuiIO &io = ImGui::GetIO();
-    // Keys choose in what popped up, and there alone: elsewhere they are the program's own.
-    io.ConfigFlags = GImGui->OpenPopupStack.Size ? ImGuiConfigFlags_NavEnableKeyboard : 0;
+    // Keys choose in what popped up, and where they walk: elsewhere they are the program's own.
+    bool walks = ui.walks || GImGui->OpenPopupStack.Size;
+    io.ConfigFlags = walks ? ImGuiConfigFlags_NavEnableKeyboard : 0;
     io.KeyMap[ImGuiKey_Space] = GLFW_KEY_ENTER; // that activates; ImGui's own choice is the bar
     // Tab walks through fields only while one is typed in; else it is the program's own.
-    io.KeyMap[ImGuiKey_Tab] = io.WantTextInput ? GLFW_KEY_TAB : -1;
+    io.KeyMap[ImGuiKey_Tab] = io.WantTextInput || ui.walks ? GLFW_KEY_TAB : -1;
     take_input(io);
     use_pixels(io);
     io.DeltaTime = fminf(io.DeltaTime, 0.1f); // the loop may have slept
@@ -250,7 +275,7 @@ bool ui_held(void) {
 }
 
 bool ui_wants_keys(void) {
-    return ImGui::GetIO().WantTextInput || GImGui->OpenPopupStack.Size;
+    return ImGui::GetIO().WantTextInput || GImGui->OpenPopupStack.Size || ui.walks;
 }
 
 void ui_copy(const char *text) {

@@ -44,13 +44,19 @@ bool ui_open(GLFWwindow *window, roil *r, const char *layout);
 void ui_close(void);
 void ui_set_scale(float scale); // pixels per unit, for high-DPI displays; call between frames
 float ui_scale(void);
+void ui_set_contrast(bool on); // black, white and lines; call between frames
+// Lets keys walk through the widgets of a panel: arrows and Tab from one to the next, Enter uses
+// it.
+void ui_walk(const char *panel); // NULL: no longer
+bool ui_walks(void);
+bool ui_types(void); // text is being typed
 // Sets a callback for each key that goes down or repeats. ui_begin calls it, in order with the
 // other input.
 void ui_on_key(void (*key)(void *user, int key, int mods, bool again), void *user);
 bool ui_pending(void); // there is input that the last frame could not take: draw another frame
 void ui_begin(void);
 void ui_end(roil_picture *out); // fills in the triangles; valid until the next ui_begin
-bool ui_wants_keys(void);       // text is being typed
+bool ui_wants_keys(void);       // text is being typed, a popup is open, or they walk
 bool ui_held(void); // a mouse button that was pressed before is down, or was let go just now
 void ui_copy(const char *text); // copies to the clipboard
 

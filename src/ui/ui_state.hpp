@@ -37,6 +37,7 @@ struct state {
     bool buttons[BUTTONS];
     void (*key)(void *user, int key, int mods, bool again);
     void *key_user;
+    bool walks; // keys go from widget to widget (ui_walk)
 };
 extern state ui;
 

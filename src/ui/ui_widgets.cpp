@@ -206,12 +206,20 @@ void part_same_line(float gap) {
     ImGui::SameLine(0, gap);
 }
 
+// Shows where keys are, on what ImGui does not draw itself.
+static void show_focus(ImGuiID id, ImVec2 low, ImVec2 high) {
+    if (!ui.walks || GImGui->NavId != id || GImGui->NavDisableHighlight) return;
+    ImGui::RenderNavHighlight(ImRect(low, high), id);
+    ui_mark("focus", {low.x, low.y, high.x, high.y});
+}
+
 part_area part_area_begin(const char *id, float width) {
     ImVec2 at = ImGui::GetCursorScreenPos();
     float height = ImGui::GetFrameHeight();
     part_area a = {};
     if (!(width > 0)) width = height;
     a.clicked = ImGui::InvisibleButton(id, ImVec2(fmaxf(width, 1), height));
+    show_focus(ImGui::GetItemID(), at, ImVec2(at.x + fmaxf(width, 1), at.y + height));
     ImGui::SetItemAllowOverlap();
     float &baseline = ImGui::GetCurrentWindow()->DC.PrevLineTextBaseOffset; // of text behind it
     baseline = fmaxf(baseline, ImGui::GetStyle().FramePadding.y);
@@ -348,12 +356,14 @@ bool part_bar(const char *name, double *value, const number_range *range, const 
     if (typing) {
         number_type_begin(&ui.typing, id, range, *value);
         bar_type(box, id, name);
+        ui_mark("typed", {box.Min.x, box.Min.y, box.Max.x, box.Max.y});
         return number_type_take(&ui.typing, id, range, value);
     }
     if (ui.typing.id == id) number_type_leave(&ui.typing); // the pointer went elsewhere
     if (number_type_take(&ui.typing, id, range, value)) return true;
     if (hovered) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
     bool changed = bar_drag(id, value, range, width);
+    show_focus(id, box.Min, box.Max);
     draw_bar({box.Min.x, box.Min.y, box.Max.x, box.Max.y}, *value, range, unit, hovered,
              g.ActiveId == id);
     return changed;
