@@ -318,7 +318,8 @@ static void draw_body(const live *l, const lens *view, size_t i, const float shi
             ui_ring(at[0], at[1], r, color, ui_scale());
         }
     }
-    if (one->moves) draw_path(l, view, i, color);
+    bool keyed = i + 1 < h->count && h->list[i + 1].key != SIZE_MAX; // others cost the script time
+    if (one->moves && (near || keyed)) draw_path(l, view, i, color);
     if (one->thing == ROIL_SUN) draw_line(view, h->middle, one->at, color, 1);
     if (i > 0 && strcmp(one->part, "target") == 0) {
         for (size_t k = i; k-- > 0;) {

@@ -122,7 +122,13 @@ static bool inspector_keep(live *l, const char *image) {
     roil_keep_only(l->effect, image[0] ? image : NULL);
     for (size_t i = 0; all && i < p->count; i++)
         if (!p->images[i].culled) roil_keep(l->effect, p->images[i].name);
-    return prepare_again(l) || !str_copy(p->failure, sizeof p->failure, roil_error());
+    bool done = prepare_again(l);
+    if (!done && all) { // there may be no memory for all
+        live_notice(l, "%s", roil_error());
+        roil_keep_only(l->effect, image[0] ? image : NULL);
+        done = prepare_again(l);
+    }
+    return done || !str_copy(p->failure, sizeof p->failure, roil_error());
 }
 
 // Makes the texture as large as its area in the last frame.

@@ -41,7 +41,7 @@ static bool is_behind(const control *c, const field *node) {
 }
 
 const effect_control *effect_control_behind(const effect *e, const field *node) {
-    for (size_t i = 0; i < e->control_count; i++)
+    for (size_t i = 0; node && i < e->control_count; i++)
         if (is_behind(e->controls[i], node)) return &e->controls[i]->face;
     return NULL;
 }
