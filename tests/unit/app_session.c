@@ -14,6 +14,12 @@ static const live_session moved = {
     .performance = true,
     .inspector = true,
     .slices = true,
+    .handles = true,
+    .ground = true,
+    .probe = true,
+    .graph = true,
+    .contrast = true,
+    .scale = 1.5f,
     .image = "march.color",
     .preview = 2,
 };
@@ -34,6 +40,8 @@ static void assert_defaults(const live_session *s) {
     assert_int_equal(s->preview, -1);
     assert_true(s->panel > 200 && s->panel < 600);
     assert_false(s->maximized || s->panel_hidden || s->performance || s->inspector || s->slices);
+    assert_false(s->handles || s->ground || s->probe || s->graph || s->contrast);
+    assert_true(s->scale == 1);
     assert_string_equal(s->image, "");
 }
 
@@ -48,6 +56,8 @@ static void what_is_kept_is_found(void **state) {
     assert_int_equal(s.height, moved.height);
     assert_true(s.panel == moved.panel);
     assert_true(s.maximized && s.panel_hidden && s.performance && s.inspector && s.slices);
+    assert_true(s.handles && s.ground && s.probe && s.graph && s.contrast);
+    assert_true(s.scale == moved.scale);
     assert_string_equal(s.image, moved.image);
     assert_int_equal(s.preview, moved.preview);
 }
@@ -70,7 +80,7 @@ static void damage_is_ignored(void **state) {
         "[1, 2]",
         "\"width\"",
         "{\"width\": \"wide\", \"height\": null, \"panel\": {}, \"maximized\": 1, \"image\": 7}",
-        "{\"width\": 1e99, \"height\": -3, \"panel\": 1e9, \"preview\": 9}",
+        "{\"width\": 1e99, \"height\": -3, \"panel\": 1e9, \"scale\": 99, \"preview\": 9}",
         "{\"width\": 800, \"height\": 0}",
         "{\"width\": NaN}",
     };
