@@ -60,12 +60,12 @@ if rendering ~= "particles" then
 end
 if rendering ~= "volume" then
   -- Particles of smoke do not spread as what is in cells does: threads stay as fine as they were.
-  local smoke = particles {
+  local threads = particles {
     count = 131072, rate = 36000, lifetime = {2.6, 3.6}, seed = 8, warm_up = 3, position = {0.002, 0, 0.006}, radius = 0.0035,
     velocity = flow.velocity + curl { frequency = 45, octaves = 2, speed = 1.5, seed = 2 } * 0.03 * rise,
   }
   local drawn = splats {
-    from = {smoke, scene, lit}, size = over_age { {0, 0.0016}, {1, 0.003} }, color = {0.95, 0.96, 1},
+    from = {threads, scene, lit}, size = over_age { {0, 0.0016}, {1, 0.003} }, color = {0.95, 0.96, 1},
     opacity = over_age { {0, 0.25}, {0.7, 0.12}, {1, 0} }, blend = "weighted", weight_distance = 1, lit = "on", anisotropy = 0.6, view_steps = 0,
   }
   picture = over { drawn, picture, from = {drawn, scene} }

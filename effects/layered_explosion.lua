@@ -81,7 +81,7 @@ end, "an explosion there")
 local bomb = nil -- its place and velocity while it flies
 fx:on_start(function() bomb = nil end)
 fx:on_key("b", function() bomb = { {-11, -4, 0.6}, {4.7, 5.45, 6.2} } end, "throw a bomb at the crates")
-fx:on_frame(function(t, dt)
+fx:on_frame(function(_, dt)
   if not bomb then return end
   local p, v = bomb[1], bomb[2]
   local hit = pick { p, v }
@@ -236,7 +236,7 @@ end
 local function volume_of(one)
   local at = one.position
   local begun = step(one.time, time)
-  local function space(of, age, radius, height) -- a field of directions, and how deep a point is, in radii
+  local function space(of, radius, height) -- a field of directions, and how deep a point is, in radii
     local p = (position - vec(at[1], at[2], at[3] + height)) / (one.size * radius)
     local far = max(length(p), 0.001)
     return of:warp(p / far - position), far
@@ -244,8 +244,8 @@ local function volume_of(one)
   local age = (time - one.time) / (life * one.life)
   local now = clamp(age, 0, 1)
   local radius, depth = ball_radius(now), depth_of(now)
-  local lumps, far = space(lumps_of(one.shift), now, radius, ball_height(now))
-  local holes = space(holes_of(one.shift), now, radius, ball_height(now))
+  local lumps, far = space(lumps_of(one.shift), radius, ball_height(now))
+  local holes = space(holes_of(one.shift), radius, ball_height(now))
   local inside = 1 + extrusion * lumps - far
   local colour = gradient_at(lumps, depth)
   local left = dissolve - depth - tear * holes
@@ -255,7 +255,7 @@ local function volume_of(one)
   local whole_age = (time - one.time) / (whole * one.life)
   local old = smoke_age(whole_age)
   local height = ball_height(clamp(age, 0, 1)) + 0.8 * old
-  local wisps, out = space(wisps_of(one.shift), old, smoke_radius(old), height)
+  local wisps, out = space(wisps_of(one.shift), smoke_radius(old), height)
   local around = sphere { position = vec(at[1], at[2], at[3] + height), radius = one.size * smoke_radius(old) * 1.4 }
   local alpha = saturate(smoke_alpha + smoke_noise * (wisps - 0.5) - (smoke_alpha + 0.5 * smoke_noise) * old) * smoothstep(0, 0.1, old)
   local globe = around * smoothstep(0, 0.25, 1 + 0.33 * wisps - out) * alpha * begun
@@ -265,13 +265,13 @@ end
 local function as_volume()
   local density, emission = 0, vec(0, 0, 0)
   for i = 1, #blasts do
-    local thick, light = volume_of(blasts:get(i))
-    density, emission = density + thick, emission + light
+    local thick, shining = volume_of(blasts:get(i))
+    density, emission = density + thick, emission + shining
   end
   local lit = lighting { density = density, emission = emission, albedo = {0.5, 0.45, 0.42}, anisotropy = 0.1 }
-  local ground = shade { from = {scene, lit}, haze = 0.006 }
+  local solid = shade { from = {scene, lit}, haze = 0.006 }
   local smoke = march { from = {lit, scene}, steps = 96, jitter = 0.5, resolution = 0.5 }
-  return over { smoke, ground, from = {smoke, scene} }
+  return over { smoke, solid, from = {smoke, scene} }
 end
 
 local picture = form:get() == "volume" and as_volume() or as_shells()

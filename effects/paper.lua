@@ -20,9 +20,9 @@ local side  = burst.box.max[1] - burst.box.min[1]
 -- are computed once, over twice the box, which they leave after five seconds only: within, the tile is
 -- the noise itself.
 local drift = {0.1, 0.15, 0.2}
-local function baked(noise, frequency)
-  if noise_bake:get() == "exact" then return noise end
-  return noise:tile { resolution = 96, cells = 2 * frequency, octaves = 2 }
+local function baked(detail, frequency)
+  if noise_bake:get() == "exact" then return detail end
+  return detail:tile { resolution = 96, cells = 2 * frequency, octaves = 2 }
 end
 local kinds = {
   perlin = function() return baked(perlin { frequency = 4, octaves = 2, persistence = 0.5, lacunarity = 2, drift = drift }, 4) end,

@@ -57,7 +57,6 @@ local flames   = bake(clamp(shape, 0, 1):warp(licks, 0.20 * smoothstep(0.05, 0.8
 
 -- Smoke in puffs, each of which is a cell that swells on its way up.
 local plume    = 0.16 + 0.26 * smoothstep(1.0, 4.0, position.z)
-local drift    = vec(0.10, 0.05, 0) * max(position.z - 1, 0)
 local puffs    = worley { frequency = 1.9, octaves = 2, persistence = 0.45, drift = {0, 0, -0.75}, speed = 0.2, seed = 23 }
 local column   = max(1 - length(vec(position.x + 0.16 * (position.z - 1), position.y - 0.1 * (position.z - 1), 0)) / plume, 0)
 local swirl    = curl { frequency = 0.9, octaves = 2, drift = {0, 0, -0.6}, seed = 8 }

@@ -37,10 +37,10 @@ local function kind_of(value) return type(value) == "userdata" and tostring(valu
 local function a_kind(value) return (kind_of(value):find("^[aei]") and "an " or "a ") .. kind_of(value) end
 
 local function names_of(t)
-  local names = {}
-  for name in pairs(t) do names[#names + 1] = name end
-  table.sort(names)
-  return table.concat(names, ", ")
+  local sorted = {}
+  for name in pairs(t) do sorted[#sorted + 1] = name end
+  table.sort(sorted)
+  return table.concat(sorted, ", ")
 end
 
 local function is_number(value) return type(value) == "number" and value - value == 0 end
@@ -220,7 +220,8 @@ local function burn_out(self, i, t)
 end
 
 local function catch(self, i, t)
-  if self.states[i] ~= NORMAL or not (self.fuels[i] > 0) then return false end
+  local burns = self.fuels[i] > 0
+  if self.states[i] ~= NORMAL or not burns then return false end
   local share = chance(self.seed, i, 0)
   local ends = t + (self.shortest + share * (self.longest - self.shortest)) * self.fuels[i]
   self.states[i], self.lit[i], self.ends[i] = BURNING, t, ends

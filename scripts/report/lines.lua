@@ -38,7 +38,7 @@ end
 local function add_point(panels, row, x, series_axis, facets, metric)
   local spread, at = metric.get(row), row.axes[x.name]
   if not row.done or not spread or not at then return end
-  local facet, parts = {}, {}
+  local parts = {}
   for _, axis in ipairs(facets) do
     parts[#parts + 1] = axis.label .. " " .. (row.axes[axis.name] or "-")
   end

@@ -19,7 +19,7 @@ assert(not pcall(function() return perlin {} + fake end))
 -- Settings that change while they are read, or that answer by a function, do no harm.
 local ball = sphere {}
 local hostile = { density = ball, opacity = false, steps = 32 }
-hostile.opacity = function(t)
+hostile.opacity = function()
   for k in pairs(hostile) do hostile[k] = nil end
   for i = 1, 1000 do hostile["x" .. i] = ("y"):rep(100) end
   assert(not pcall(param, { "late", 1 }) and not pcall(march, { density = ball }))
