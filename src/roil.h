@@ -38,6 +38,16 @@ const char *roil_version(void); // such as "1.2.3"; static
 // valid until the thread's next call of a roil function.
 const char *roil_error(void);
 
+typedef struct roil_place {
+    char file[4096]; // as the message names it
+    int line;        // from 1
+    int column;      // bytes, from 1: of the word at fault, else of the line's first; 0: unknown
+} roil_place;
+// Finds the place that a message of roil_error names ("smoke.lua:12: ..."); of several the
+// innermost whose file can be read, as of a shader that the script uses. `r` knows where the
+// library's own files lie, and may be NULL. False: it names none.
+bool roil_find_place(const roil *r, const char *message, roil_place *out);
+
 // ---- device -----------------------------------------------------------------------------------
 
 typedef struct roil_window_desc {  // a window to show pictures in; any window library can make it
@@ -50,8 +60,8 @@ typedef struct roil_window_desc {  // a window to show pictures in; any window l
 } roil_window_desc;
 
 typedef struct roil_desc {
-    // Part of a device's name, or its number in the list of roil_info_devices. NULL: the first real
-    // GPU, or a software device where there is none.
+    // Part of a device's name, its UUID, or its number in the list of roil_info_devices. NULL: the
+    // first real GPU, or a software device where there is none.
     const char *device;
     // Folder with shaders/ and scripts/. NULL: $ROIL_HOME, or else a folder found from where the
     // program lies.
@@ -652,7 +662,27 @@ char *roil_info_fields(const char *name);          // NULL: one line for each; a
 char *roil_info_params(roil_effect *e); // memory; parameters; uniforms and options of passes
 char *roil_info_graph(roil_effect *e);  // Graphviz dot; after roil_check or roil_prepare
 char *roil_info_vdb(const char *file);  // any thread
-void roil_free(void *text);             // NULL is allowed
+
+// The same for programs, as JSON:
+// {"roil": version, "words": [...], "passes": [...]}. A word has "name", "is" ("field": a function
+// that makes one; "value": a field; "object": any other function; "module": for require), "group",
+// "summary", "form", and lists of values: "arguments", "keys", "members". A pass has "name",
+// "constructor" (whether a word of that name makes it), "summary", "inputs", "fields", "options",
+// "uniforms", "outputs", "counters". A value has "name", "type" ("number", "whole", "bool", "word",
+// "color", "other"), "help", and what there is of "components", "default" (or "form": how it is
+// written), "min", "max", "unit", "words", "required".
+// `list`: "words" or "passes" alone, and of these the one called `name`; NULL: all.
+char *roil_info_json(roil *r, const char *list, const char *name);
+// {"devices": [{"index", "name", "uuid", "kind", "driver", "memory", "usable", "missing"}]}. Any
+// thread.
+char *roil_info_devices_json(void);
+// {"effect": {"name", "fps", "first_frame", "frames"}, "controls": [...]}: values, with "value" and
+// "initial" or "text", and the members of roil_control.
+char *roil_info_params_json(roil_effect *e);
+// Annotations for lua-language-server (LuaLS): every function, key, unit and word of an effect's
+// vocabulary, as a file of Lua that is never run.
+char *roil_info_lua_meta(roil *r);
+void roil_free(void *text); // NULL is allowed
 
 #ifdef __cplusplus
 }

@@ -28,6 +28,14 @@ int app_close(roil *r, int status);
 // Prints text that may come from a file, without what a terminal would obey (str_make_printable).
 void app_print(FILE *out, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
+// ---- JSON -------------------------------------------------------------------------------------
+
+struct json_t;
+// {"file", "line", "column", "message"} of roil_error(): `file` where the message names none. `r`
+// may be NULL.
+struct json_t *app_error_json(const roil *r, const char *file);
+int app_print_json(struct json_t *root, int status); // takes the tree; returns the status
+
 // ---- options ----------------------------------------------------------------------------------
 
 struct poptOption;

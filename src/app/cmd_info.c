@@ -1,67 +1,111 @@
 // roil info ...: prints the reference from the program's own tables.
 #include "app/app.h"
 #include "app/device_options.h"
+#include "base/memory.h"
 #include "base/str.h"
+#include <jansson.h>
 #include <popt.h>
 #include <stdio.h>
 #include <string.h>
 
-static int info_print(char *text) {
-    if (!text) return app_fail_input();
+typedef struct info_job {
+    const char *what, *name;
+    app_settings settings;
+    const char *memory;
+    int json, lua_meta;
+} info_job;
+
+// Fails with roil_error(), in JSON too where that was asked for.
+static int info_fail(const info_job *j, const roil *r, const char *file) {
+    int status = app_fail_input();
+    if (!j->json) return status;
+    json_t *errors = json_pack("[o]", app_error_json(r, file));
+    return app_print_json(json_pack("{s:s, s:o}", "roil", roil_version(), "errors", errors),
+                          status);
+}
+
+static int info_print(const info_job *j, char *text) {
+    if (!text) return info_fail(j, NULL, "");
     str_make_printable(text);
     fputs(text, stdout);
+    if (j->json) puts("");
     roil_free(text);
     return APP_DONE;
 }
 
-static int info_passes(const char *name) {
+// Passes, words or everything, from the tables of the library.
+static int info_reference(const info_job *j, const char *list) {
     roil *r = roil_create(&(roil_desc){.no_device = true});
-    int status = r ? info_print(roil_info_passes(r, name)) : app_fail_input();
+    int status;
+    if (!r)
+        status = info_fail(j, NULL, "");
+    else if (j->lua_meta)
+        status = info_print(j, roil_info_lua_meta(r));
+    else if (j->json)
+        status = info_print(j, roil_info_json(r, list, j->name));
+    else
+        status = info_print(j, roil_info_passes(r, j->name));
     roil_destroy(r);
     return status;
 }
 
-static int info_effect(const char *what, const char *file, app_settings *settings,
-                       const char *memory) {
-    if (!file) return app_fail(APP_BAD_USAGE, "info %s: of which effect?", what);
+static int info_effect(info_job *j) {
+    const char *file = j->name;
+    bool graph = strcmp(j->what, "graph") == 0;
+    if (!file) return app_fail(APP_BAD_USAGE, "info %s: of which effect?", j->what);
     app_progress files = {0};
     roil *r = roil_create(&(roil_desc){
-        .no_device = true, .memory = memory, .loading = app_tell_files, .user = &files});
-    bool collected = r && app_collect_settings(settings, r, file, NULL);
-    roil_effect *e = collected ? roil_load(r, file, settings->all, settings->count) : NULL;
+        .no_device = true, .memory = j->memory, .loading = app_tell_files, .user = &files});
+    bool collected = r && app_collect_settings(&j->settings, r, file, NULL);
+    roil_effect *e = collected ? roil_load(r, file, j->settings.all, j->settings.count) : NULL;
     int status;
-    if (!e)
-        status = app_fail_input();
-    else if (strcmp(what, "params") == 0)
-        status = info_print(roil_info_params(e));
+    if (!e || (graph && !roil_check(e)))
+        status = info_fail(j, r, file);
+    else if (graph)
+        status = info_print(j, roil_info_graph(e));
     else
-        status = roil_check(e) ? info_print(roil_info_graph(e)) : app_fail_input();
+        status = info_print(j, j->json ? roil_info_params_json(e) : roil_info_params(e));
     roil_unload(e);
     roil_destroy(r);
     return status;
 }
 
-static int info_index(void) {
-    puts("roil info device                what devices there are\n"
-         "roil info passes [NAME]         the types of passes, or all of one\n"
-         "roil info fields [NAME]         the kinds of fields and their operators, or all of one\n"
-         "roil info params EFFECT.lua     what --set, presets and the window can change in an "
-         "effect\n"
-         "roil info graph EFFECT.lua      its passes in order, their images and memory\n"
-         "roil info FILE.vdb              the grids of a volume\n");
-    return info_print(roil_info_devices());
+static int info_devices(const info_job *j) {
+    return info_print(j, j->json ? roil_info_devices_json() : roil_info_devices());
 }
 
-static int info(const char *what, const char *name, app_settings *settings, const char *memory) {
+static int info_index(const info_job *j) {
+    if (j->json || j->lua_meta) return info_reference(j, NULL);
+    puts(
+        "roil info device                what devices there are\n"
+        "roil info passes [NAME]         the types of passes, or all of one\n"
+        "roil info fields [NAME]         the kinds of fields and their operators, or all of one\n"
+        "roil info params EFFECT.lua     what --set, presets and the window can change in an "
+        "effect\n"
+        "roil info graph EFFECT.lua      its passes in order, their images and memory\n"
+        "roil info FILE.vdb              the grids of a volume\n"
+        "roil info --json                passes and fields, for programs; with a topic that alone\n"
+        "roil info --lua-meta            the same for editors, as lua-language-server reads it\n");
+    return info_devices(j);
+}
+
+static int info(info_job *j) {
     static const char *const topics[] = {"device", "passes", "fields", "params", "graph"};
-    if (!what) return info_index();
-    if (strcmp(what, "device") == 0) return info_print(roil_info_devices());
-    if (strcmp(what, "passes") == 0) return info_passes(name);
-    if (strcmp(what, "fields") == 0) return info_print(roil_info_fields(name));
-    if (strcmp(what, "params") == 0 || strcmp(what, "graph") == 0)
-        return info_effect(what, name, settings, memory);
-    if (str_ends_with(what, ".vdb")) return info_print(roil_info_vdb(what));
-    const char *near = str_nearest(what, topics, 5);
+    const char *what = j->what;
+    if (!what) return info_index(j);
+    if (j->lua_meta) return app_fail(APP_BAD_USAGE, "info: --lua-meta has no topic '%s'", what);
+    if (strcmp(what, "device") == 0) return info_devices(j);
+    if (strcmp(what, "passes") == 0) return info_reference(j, what);
+    if (strcmp(what, "fields") == 0)
+        return j->json ? info_reference(j, "words") : info_print(j, roil_info_fields(j->name));
+    bool plain = strcmp(what, "graph") == 0 || str_ends_with(what, ".vdb");
+    if (j->json && plain)
+        return app_fail(APP_BAD_USAGE,
+                        "info: --json goes with device, passes, fields and params; a graph is "
+                        "printed as dot, which programs read");
+    if (strcmp(what, "params") == 0 || strcmp(what, "graph") == 0) return info_effect(j);
+    if (plain) return info_print(j, roil_info_vdb(what));
+    const char *near = str_nearest(what, topics, COUNT_OF(topics));
     if (near)
         return app_fail(APP_BAD_USAGE, "info: unknown topic '%s'; did you mean '%s'?", what, near);
     return app_fail(APP_BAD_USAGE,
@@ -72,15 +116,17 @@ static int info(const char *what, const char *name, app_settings *settings, cons
 
 int cmd_info(int argc, const char **argv) {
     enum { OPTION_PRESET = 1, OPTION_SET };
-    const char *memory = NULL;
+    info_job j = {0};
     const struct poptOption options[] = {
         {"preset", '\0', POPT_ARG_STRING, NULL, OPTION_PRESET,
          "of params, graph: with values kept beside the effect, or in a file", "NAME|FILE.lua"},
         {"set", '\0', POPT_ARG_STRING, NULL, OPTION_SET, "of params, graph: as render takes it",
          "NAME=VALUE"},
-        APP_MEMORY_ROW(&memory),
+        {"lua-meta", '\0', POPT_ARG_NONE, &j.lua_meta, 0,
+         "print annotations for lua-language-server: every function, key, unit and word", NULL},
+        APP_JSON_ROW(&j.json),
+        APP_MEMORY_ROW(&j.memory),
         POPT_AUTOHELP POPT_TABLEEND};
-    app_settings settings = {0};
     poptContext context = poptGetContext("roil info", argc, argv, options, 0);
     poptSetOtherOptionHelp(context, "[device | passes [NAME] | fields [NAME] | params EFFECT.lua | "
                                     "graph EFFECT.lua | FILE.vdb]");
@@ -89,9 +135,9 @@ int cmd_info(int argc, const char **argv) {
     while (right && (code = poptGetNextOpt(context)) > 0) {
         char *text = poptGetOptArg(context);
         if (code == OPTION_PRESET)
-            app_add_preset(&settings, text);
+            app_add_preset(&j.settings, text);
         else
-            right = app_add_set(&settings, text);
+            right = app_add_set(&j.settings, text);
     }
     if (!right) {
         status = app_fail(APP_BAD_USAGE, "info: %s", roil_error());
@@ -99,10 +145,11 @@ int cmd_info(int argc, const char **argv) {
         app_refuse_option(context, options, code);
         status = app_fail(APP_BAD_USAGE, "info: %s", roil_error());
     } else {
-        const char *what = poptGetArg(context);
-        status = info(what, poptGetArg(context), &settings, memory);
+        j.what = poptGetArg(context);
+        j.name = poptGetArg(context);
+        status = info(&j);
     }
-    app_free_settings(&settings);
+    app_free_settings(&j.settings);
     poptFreeContext(context);
     return status;
 }

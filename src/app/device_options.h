@@ -5,7 +5,10 @@
 
 // The row of commands in which others open the device. `to`: address of a const char *.
 #define APP_DEVICE_ROW(to)                                                                         \
-    { "device", 'd', POPT_ARG_STRING, (to), 0, "part of a device's name, or its number", "DEVICE" }
+    {                                                                                              \
+        "device", 'd', POPT_ARG_STRING, (to), 0,                                                   \
+            "part of a device's name, its UUID or its number", "DEVICE"                            \
+    }
 
 // The row for how long a load may take. `to`: address of a double.
 #define APP_TIME_ROW(to)                                                                           \
@@ -14,6 +17,10 @@
             "limit on loading an effect; the script of a frame gets a tenth (default: 120)",       \
             "SECONDS"                                                                              \
     }
+
+// The row of commands whose results programs read too. `to`: address of an int.
+#define APP_JSON_ROW(to)                                                                           \
+    { "json", '\0', POPT_ARG_NONE, (to), 0, "print JSON, for programs", NULL }
 
 typedef struct app_device {
     const char *name;

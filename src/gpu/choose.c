@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 static gpu_kind kind_of(VkPhysicalDeviceType type) {
     switch (type) {
@@ -108,6 +109,14 @@ static gpu_limits limits_of(VkPhysicalDevice physical, const VkPhysicalDeviceLim
                         .first_instance = features.drawIndirectFirstInstance};
 }
 
+// As tools of vendors print it: groups of 4, 2, 2, 2 and 6 bytes.
+static void print_uuid(const uint8_t id[VK_UUID_SIZE], char out[37]) {
+    for (size_t i = 0; i < VK_UUID_SIZE; i++) {
+        bool group = i == 4 || i == 6 || i == 8 || i == 10;
+        out += snprintf(out, 4, "%s%02x", group ? "-" : "", id[i]);
+    }
+}
+
 static void describe(vk_choice *choice, VkSurfaceKHR surface) {
     VkPhysicalDevice physical = choice->physical;
     gpu_info *info = &choice->info;
@@ -121,6 +130,7 @@ static void describe(vk_choice *choice, VkSurfaceKHR surface) {
     if (p->apiVersion >= VK_API_VERSION_1_2) {
         two.pNext = &driver;
         vkGetPhysicalDeviceProperties2(physical, &two);
+        print_uuid(v11.deviceUUID, info->uuid);
     }
 
     choice->pushes = can_push(physical);
@@ -230,13 +240,17 @@ const vk_choice *vk_choice_pick(const vk_choice *choices, int count, const char 
     }
     if (is_index(device, count, &index)) return usable(&choices[index]);
     for (int i = 0; i < count; i++) {
+        if (strcasecmp(choices[i].info.uuid, device) == 0) return usable(&choices[i]);
+    }
+    for (int i = 0; i < count; i++) {
         if (contains(choices[i].info.name, device)) return usable(&choices[i]);
     }
     strbuf names = {0};
     for (int i = 0; i < count; i++) {
         strbuf_add(&names, "%s%d: %s", i ? ", " : "", i, choices[i].info.name);
     }
-    err_set("no device is called '%s'; there are: %s (an index or a part of a name is accepted)",
+    err_set("no device is called '%s'; there are: %s (an index, a UUID or a part of a name is "
+            "accepted)",
             device, strbuf_text(&names));
     strbuf_free(&names);
     return NULL;

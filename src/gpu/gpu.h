@@ -25,6 +25,7 @@ typedef enum gpu_kind { GPU_DISCRETE, GPU_INTEGRATED, GPU_VIRTUAL, GPU_CPU, GPU_
 typedef struct gpu_info {
     char name[256];
     char driver[256]; // driver name and version, as the driver words it
+    char uuid[37];    // "01234567-89ab-..."; the same after a restart; "" before Vulkan 1.2
     gpu_kind kind;
     uint64_t memory;            // bytes of the largest device-local heap
     uint64_t max_storage_range; // bytes of one storage buffer binding

@@ -1,9 +1,8 @@
 // Reference texts, printed from the tables that the library itself uses.
+#include "roil/info.h"
 #include "base/error.h"
 #include "base/memory.h"
 #include "media/vdb.h"
-#include "roil/roil_impl.h"
-#include "script/reference.h"
 #include <math.h>
 #include <string.h>
 
@@ -62,7 +61,7 @@ static void print_keys(strbuf *out, const char *title, const value_desc *keys) {
 
 // ---- devices ----------------------------------------------------------------------------------
 
-static const char *kind_name(gpu_kind kind) {
+const char *info_device_kind(gpu_kind kind) {
     static const char *const names[] = {"discrete GPU", "integrated GPU", "virtual GPU", "software",
                                         "other"};
     return names[kind];
@@ -75,9 +74,10 @@ char *roil_info_devices(void) {
     strbuf out = {0};
     for (int i = 0; i < count && i < (int)COUNT_OF(infos); i++) {
         const gpu_info *d = &infos[i];
-        strbuf_add(&out, "%d  %s (%s)\n", i, d->name, kind_name(d->kind));
+        strbuf_add(&out, "%d  %s (%s)\n", i, d->name, info_device_kind(d->kind));
         strbuf_add(&out, "   driver %s, Vulkan %u.%u, %.1f GiB, subgroups of %u\n", d->driver,
                    d->api_major, d->api_minor, (double)d->memory / (1 << 30), d->subgroup_size);
+        if (d->uuid[0]) strbuf_add(&out, "   UUID %s\n", d->uuid);
         if (!d->usable) strbuf_add(&out, "   cannot be used: %s\n", d->missing);
     }
     if (!count) strbuf_add(&out, "no Vulkan device\n");
@@ -86,9 +86,19 @@ char *roil_info_devices(void) {
 
 // ---- passes -----------------------------------------------------------------------------------
 
+value_desc info_field(const shader_field *f) {
+    value_desc desc = {.name = f->name,
+                       .components = f->components,
+                       .required = f->required,
+                       .unit = "",
+                       .help = f->help};
+    memcpy(desc.value, f->value, sizeof desc.value);
+    return desc;
+}
+
 static void print_field(strbuf *out, const shader_field *f) {
     strbuf name = {0};
-    value_desc desc = {.components = f->components, .required = f->required, .unit = ""};
+    value_desc desc = info_field(f);
     strbuf_add(&name, "%s ", f->glsl_type);
     value_show(&desc, f->name, f->value, &name);
     entry(out, strbuf_text(&name), f->help);
@@ -175,6 +185,12 @@ char *roil_info_passes(roil *r, const char *name) {
 
 // ---- fields -----------------------------------------------------------------------------------
 
+value_desc info_option(const field_option *o) {
+    value_desc desc = {.name = o->name, .type = VALUE_WORD, .words = o->words, .help = o->help};
+    while (desc.word_count < COUNT_OF(o->words) && o->words[desc.word_count]) desc.word_count++;
+    return desc;
+}
+
 static void print_kind(strbuf *out, const field_kind *kind) {
     strbuf_add(out, "%s (%s)\n\n", kind->name, kind->group);
     add_flowing(out, 0, 0, kind->summary);
@@ -182,10 +198,8 @@ static void print_kind(strbuf *out, const field_kind *kind) {
     for (int i = 0; i < FIELD_MAX_ARGS && kind->args[i].desc.name; i++)
         describe(out, &kind->args[i].desc);
     for (int i = 0; i < FIELD_MAX_OPTIONS && kind->options[i].name; i++) {
-        const field_option *o = &kind->options[i];
         if (i == 0) strbuf_add(out, "\noptions (structure; * is the default)\n");
-        value_desc desc = {.name = o->name, .type = VALUE_WORD, .words = o->words, .help = o->help};
-        while (desc.word_count < COUNT_OF(o->words) && o->words[desc.word_count]) desc.word_count++;
+        value_desc desc = info_option(&kind->options[i]);
         describe(out, &desc);
     }
 }

@@ -1,9 +1,10 @@
-// Messages for people who edit an effect: adds the line of source that a message names and, where
-// the line contains the quoted word exactly once, a caret below it.
+// Messages for people who edit an effect: the line of source that a message names and, where the
+// line contains the quoted word exactly once, the column of that.
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/str.h"
 #include "roil/live.h"
+#include <assert.h>
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
@@ -36,15 +37,17 @@ static bool read_source(const char *path, const char *scripts, char **out) {
     void *data;
     size_t size;
     if (!file_read(path, SOURCE_MAX, &data, &size) &&
-        (!path_join(other, scripts, path) || !file_read(other, SOURCE_MAX, &data, &size)))
+        (!scripts || !path_join(other, scripts, path) ||
+         !file_read(other, SOURCE_MAX, &data, &size)))
         return false;
     *out = data;
     return true;
 }
 
-// Returns line `number` without its indentation. False when there is no such line, or when it is
-// empty.
-static bool source_line(const char *path, const char *scripts, int number, char out[LINE_MAX]) {
+// Returns line `number` without its indentation, whose length may be asked for. False when there is
+// no such line, or when it is empty.
+static bool source_line(const char *path, const char *scripts, int number, char out[LINE_MAX],
+                        size_t *indent) {
     char *text;
     if (!read_source(path, scripts, &text)) return false;
     const char *at = text;
@@ -52,7 +55,9 @@ static bool source_line(const char *path, const char *scripts, int number, char 
         at = strchr(at, '\n');
         if (at) at++;
     }
-    if (at) at += strspn(at, " \t");
+    size_t blank = at ? strspn(at, " \t") : 0;
+    if (at) at += blank;
+    if (indent) *indent = blank;
     size_t length = at ? strcspn(at, "\r\n") : 0;
     if (length >= LINE_MAX) length = LINE_MAX - 1;
     if (length) memcpy(out, at, length);
@@ -115,11 +120,47 @@ char *live_explain(const char *message, const char *scripts) {
         strbuf_append(&out, rest, 5 + length);
         rest += 5 + length;
     } else if (find_place(message, path, &number)) {
-        known = source_line(path, scripts, number, line);
+        known = source_line(path, scripts, number, line, NULL);
         if (known) strbuf_add(&out, "\n" INDENT "%s", line);
     }
     int column = known ? find_column(message, line) : -1;
     if (column >= 0) strbuf_add(&out, "\n" INDENT "%*s^", column, "");
     strbuf_append(&out, rest, strlen(rest));
     return out.text;
+}
+
+// Finds a place further on in the first line, "user.lua:2: haze: ./haze.comp:5: ...", whose file
+// can be read.
+static bool find_inner(const char *message, const char *scripts, char path[PATH_CAP], int *line,
+                       char text[LINE_MAX], size_t *indent) {
+    const char *end = message + strcspn(message, "\n");
+    for (const char *at = message; (at = strstr(at, ": ")) && at < end;) {
+        at += 2;
+        bool named = find_place(at, path, line) && !strchr(path, ' ');
+        if (named && source_line(path, scripts, *line, text, indent)) return true;
+    }
+    return false;
+}
+
+bool roil_find_place(const roil *r, const char *message, roil_place *out) {
+    static_assert(sizeof out->file >= PATH_CAP, "a path fits");
+    const char *scripts = r ? r->scripts : NULL;
+    char line[LINE_MAX];
+    size_t indent;
+    *out = (roil_place){0};
+    size_t size = strlen(message) + 1;
+    char *kept = mem_copy(message, size); // reading a file may set another
+    bool found = true;
+    bool read = find_inner(kept, scripts, out->file, &out->line, line, &indent);
+    if (!read) {
+        found = find_place(kept, out->file, &out->line);
+        read = found && source_line(out->file, scripts, out->line, line, &indent);
+    }
+    if (read) {
+        int column = find_column(kept, line);
+        out->column = (int)indent + (column < 0 ? 0 : column) + 1;
+    }
+    if (!found) *out = (roil_place){0};
+    mem_free(kept);
+    return found;
 }

@@ -116,6 +116,7 @@ static const script_object reference_words[] = {
     {"spread", "effect", "local spread = require \"spread\"; local fire = spread { fx = fx, at = forest }",
      "a module: fire, or whatever passes from one thing to the next, by a queue of events. Each is normal, "
      "then burning, then burned; fire:on_ignite(function(i, t) end), on_late and on_burned are told",
+     .module = true,
      .keys = KEYS(
         KEY("fx", "effect { }", "required"),
         KEY("at", "instances { }, { {x, y, z}, ... } m", "what burns; required"),

@@ -14,6 +14,7 @@ typedef struct script_object {
     const value_desc *args, *keys, *members;
     const scene_value *values; // of a scene object: the fields that are keys, too, or NULL,
     unsigned takes;            // and what these may need (scene_need)
+    bool module;               // by `require`, and no global
 } script_object;
 
 const script_object *script_object_at(size_t index);       // NULL: there are no more
