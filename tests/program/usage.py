@@ -60,7 +60,7 @@ class Usage(Case):
         self.fails(2, "did you mean '--fields'?", "export", "vdb", "--field", "density")
         self.fails(2, "did you mean '--shard'?", "bench", "--shart", "1/2")
         self.fails(2, "did you mean '--max-error'?", "tune", "--max-eror", "1")
-        self.fails(2, ["unknown option '--quick'", "accepted: --preset, --memory, --time-limit, --help, --usage"], "check",
+        self.fails(2, ["unknown option '--quick'", "accepted: --preset, --json, --memory, --time-limit, --help, --usage"], "check",
                    "--quick", "puff.lua")
         self.fails(2, ["unknown option '-x'", "accepted: --output, "], "compare", "-x")
 
