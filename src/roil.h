@@ -151,6 +151,9 @@ roil_effect *roil_load(roil *r, const char *file, const roil_setting *settings, 
 roil_effect *roil_load_inside(roil *r, const char *folder, const char *file,
                               const roil_setting *settings, size_t count);
 void roil_unload(roil_effect *e); // NULL is fine
+// Lists the files that the effect has read until now, or looked for: absolute paths, which live as
+// long as the effect.
+size_t roil_files(const roil_effect *e, const char **out, size_t capacity);
 // Compiles every shader and checks the graph, without a device.
 bool roil_check(roil_effect *e);
 
@@ -662,6 +665,7 @@ char *roil_info_fields(const char *name);          // NULL: one line for each; a
 char *roil_info_params(roil_effect *e); // memory; parameters; uniforms and options of passes
 char *roil_info_graph(roil_effect *e);  // Graphviz dot; after roil_check or roil_prepare
 char *roil_info_vdb(const char *file);  // any thread
+char *roil_info_effects(roil *r);       // those that lie in effects/ of the home, a line for each
 
 // The same for programs, as JSON:
 // {"roil": version, "words": [...], "passes": [...]}. A word has "name", "is" ("field": a function
@@ -679,6 +683,9 @@ char *roil_info_devices_json(void);
 // {"effect": {"name", "fps", "first_frame", "frames"}, "controls": [...]}: values, with "value" and
 // "initial" or "text", and the members of roil_control.
 char *roil_info_params_json(roil_effect *e);
+// {"effects": [{"name", "file", "summary", "picture"}]}; "picture" is a PNG file, if there is one.
+char *roil_info_effects_json(roil *r);
+char *roil_info_effects_page(roil *r); // a page of HTML that needs no other file, with the pictures
 // Annotations for lua-language-server (LuaLS): every function, key, unit and word of an effect's
 // vocabulary, as a file of Lua that is never run.
 char *roil_info_lua_meta(roil *r);

@@ -1,6 +1,7 @@
 // roil info ...: prints the reference from the program's own tables.
 #include "app/app.h"
 #include "app/device_options.h"
+#include "base/file.h"
 #include "base/memory.h"
 #include "base/str.h"
 #include <jansson.h>
@@ -11,7 +12,7 @@
 typedef struct info_job {
     const char *what, *name;
     app_settings settings;
-    const char *memory;
+    const char *memory, *output;
     int json, lua_meta;
 } info_job;
 
@@ -74,12 +75,33 @@ static int info_devices(const info_job *j) {
     return info_print(j, j->json ? roil_info_devices_json() : roil_info_devices());
 }
 
+static int info_effects(const info_job *j) {
+    roil *r = roil_create(&(roil_desc){.no_device = true});
+    int status;
+    if (!r) {
+        status = info_fail(j, NULL, "");
+    } else if (j->output) {
+        char *page = roil_info_effects_page(r);
+        bool done = page && file_make_parent_folders(j->output) &&
+                    file_write(j->output, page, strlen(page));
+        status = done ? APP_DONE : app_fail_input();
+        if (done) app_print(stdout, "wrote %s\n", j->output);
+        roil_free(page);
+    } else {
+        status = info_print(j, j->json ? roil_info_effects_json(r) : roil_info_effects(r));
+    }
+    roil_destroy(r);
+    return status;
+}
+
 static int info_index(const info_job *j) {
     if (j->json || j->lua_meta) return info_reference(j, NULL);
     puts(
         "roil info device                what devices there are\n"
         "roil info passes [NAME]         the types of passes, or all of one\n"
         "roil info fields [NAME]         the kinds of fields and their operators, or all of one\n"
+        "roil info effects               the effects that come with roil; -o FILE.html: with "
+        "pictures\n"
         "roil info params EFFECT.lua     what --set, presets and the window can change in an "
         "effect\n"
         "roil info graph EFFECT.lua      its passes in order, their images and memory\n"
@@ -90,19 +112,26 @@ static int info_index(const info_job *j) {
 }
 
 static int info(info_job *j) {
-    static const char *const topics[] = {"device", "passes", "fields", "params", "graph"};
+    static const char *const topics[] = {"device",  "passes", "fields",
+                                         "effects", "params", "graph"};
     const char *what = j->what;
     if (!what) return info_index(j);
     if (j->lua_meta) return app_fail(APP_BAD_USAGE, "info: --lua-meta has no topic '%s'", what);
+    bool effects = strcmp(what, "effects") == 0;
+    if (j->output && !effects)
+        return app_fail(APP_BAD_USAGE, "info: -o goes with effects, as in `roil info effects -o "
+                                       "effects.html`");
+    if (effects) return info_effects(j);
     if (strcmp(what, "device") == 0) return info_devices(j);
     if (strcmp(what, "passes") == 0) return info_reference(j, what);
     if (strcmp(what, "fields") == 0)
         return j->json ? info_reference(j, "words") : info_print(j, roil_info_fields(j->name));
     bool plain = strcmp(what, "graph") == 0 || str_ends_with(what, ".vdb");
     if (j->json && plain)
-        return app_fail(APP_BAD_USAGE,
-                        "info: --json goes with device, passes, fields and params; a graph is "
-                        "printed as dot, which programs read");
+        return app_fail(
+            APP_BAD_USAGE,
+            "info: --json goes with device, passes, fields, effects and params; a graph is "
+            "printed as dot, which programs read");
     if (strcmp(what, "params") == 0 || strcmp(what, "graph") == 0) return info_effect(j);
     if (plain) return info_print(j, roil_info_vdb(what));
     const char *near = str_nearest(what, topics, COUNT_OF(topics));
@@ -110,7 +139,7 @@ static int info(info_job *j) {
         return app_fail(APP_BAD_USAGE, "info: unknown topic '%s'; did you mean '%s'?", what, near);
     return app_fail(APP_BAD_USAGE,
                     "info: unknown topic '%s'; accepted: device, passes [NAME], fields [NAME], "
-                    "params EFFECT.lua, graph EFFECT.lua, FILE.vdb",
+                    "effects, params EFFECT.lua, graph EFFECT.lua, FILE.vdb",
                     what);
 }
 
@@ -122,14 +151,16 @@ int cmd_info(int argc, const char **argv) {
          "of params, graph: with values kept beside the effect, or in a file", "NAME|FILE.lua"},
         {"set", '\0', POPT_ARG_STRING, NULL, OPTION_SET, "of params, graph: as render takes it",
          "NAME=VALUE"},
+        {"output", 'o', POPT_ARG_STRING, &j.output, 0, "of effects: a page with their pictures",
+         "FILE.html"},
         {"lua-meta", '\0', POPT_ARG_NONE, &j.lua_meta, 0,
          "print annotations for lua-language-server: every function, key, unit and word", NULL},
         APP_JSON_ROW(&j.json),
         APP_MEMORY_ROW(&j.memory),
         POPT_AUTOHELP POPT_TABLEEND};
     poptContext context = poptGetContext("roil info", argc, argv, options, 0);
-    poptSetOtherOptionHelp(context, "[device | passes [NAME] | fields [NAME] | params EFFECT.lua | "
-                                    "graph EFFECT.lua | FILE.vdb]");
+    poptSetOtherOptionHelp(context, "[device | passes [NAME] | fields [NAME] | effects | params "
+                                    "EFFECT.lua | graph EFFECT.lua | FILE.vdb]");
     int code, status;
     bool right = true;
     while (right && (code = poptGetNextOpt(context)) > 0) {

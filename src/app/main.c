@@ -23,6 +23,7 @@ static const struct {
 } commands[] = {
     {"render", cmd_render, "render frames of an effect to PNG, EXR or MP4"},
     {"live", cmd_live, "open a window in which an effect is tuned while it runs"},
+    {"new", cmd_new, "make a folder with an effect to begin with, and all that it reads"},
     {"check", cmd_check, "load, compile and validate effects; render nothing"},
     {"info", cmd_info, "tell about devices, passes, fields, an effect or a VDB file"},
     {"export", cmd_export,

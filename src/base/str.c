@@ -63,6 +63,20 @@ void strbuf_add_float(strbuf *s, float value) {
     strbuf_append(s, text, strlen(text));
 }
 
+void strbuf_add_base64(strbuf *out, const void *data, size_t size) {
+    const unsigned char *bytes = data;
+    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    for (size_t i = 0; i < size; i += 3) {
+        size_t left = size - i;
+        unsigned three =
+            bytes[i] << 16 | (left > 1 ? bytes[i + 1] << 8 : 0) | (left > 2 ? bytes[i + 2] : 0);
+        char four[4] = {digits[three >> 18], digits[three >> 12 & 63],
+                        left > 1 ? digits[three >> 6 & 63] : '=',
+                        left > 2 ? digits[three & 63] : '='};
+        strbuf_append(out, four, sizeof four);
+    }
+}
+
 void strbuf_free(strbuf *s) {
     mem_free(s->text);
     *s = (strbuf){0};

@@ -13,6 +13,7 @@ typedef struct strbuf {
 void strbuf_add(strbuf *s, const char *format, ...) PRINTF_LIKE(2, 3);
 void strbuf_append(strbuf *s, const char *bytes, size_t length);
 void strbuf_add_float(strbuf *s, float value); // the shortest number that reads back the same
+void strbuf_add_base64(strbuf *s, const void *data, size_t size);
 void strbuf_free(strbuf *s);
 const char *strbuf_text(const strbuf *s); // "" when empty
 

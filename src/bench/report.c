@@ -10,19 +10,6 @@
 
 enum { PICTURE_MAX = 1 << 20, PICTURES_MAX = 128 << 20 }; // bytes of one, and of all
 
-static void add_base64(strbuf *out, const unsigned char *bytes, size_t size) {
-    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    for (size_t i = 0; i < size; i += 3) {
-        size_t left = size - i;
-        unsigned three =
-            bytes[i] << 16 | (left > 1 ? bytes[i + 1] << 8 : 0) | (left > 2 ? bytes[i + 2] : 0);
-        char four[4] = {digits[three >> 18], digits[three >> 12 & 63],
-                        left > 1 ? digits[three >> 6 & 63] : '=',
-                        left > 2 ? digits[three & 63] : '='};
-        strbuf_append(out, four, sizeof four);
-    }
-}
-
 // Returns a PNG file as a data URL; NULL when there is none. `*room`: bytes that are left.
 static json_t *picture(const char *folder, const char *name, size_t *room) {
     static const unsigned char magic[] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
@@ -36,7 +23,7 @@ static json_t *picture(const char *folder, const char *name, size_t *room) {
     if (size <= *room && size > sizeof magic && memcmp(data, magic, sizeof magic) == 0) {
         strbuf text = {0};
         strbuf_add(&text, "data:image/png;base64,");
-        add_base64(&text, data, size);
+        strbuf_add_base64(&text, data, size);
         address = json_string(text.text);
         strbuf_free(&text);
         *room -= size;

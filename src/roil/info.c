@@ -34,7 +34,7 @@ static void add_flowing(strbuf *out, size_t indent, size_t column, const char *t
     strbuf_append(out, "\n", 1);
 }
 
-static void entry(strbuf *out, const char *name, const char *help) {
+void info_add_entry(strbuf *out, const char *name, const char *help) {
     strbuf_add(out, "  %-*s", HELP_COLUMN - 2, name);
     if (strlen(name) > HELP_COLUMN - 3) strbuf_add(out, "\n%*s", HELP_COLUMN, "");
     add_flowing(out, HELP_COLUMN, HELP_COLUMN, help);
@@ -44,7 +44,7 @@ static void describe(strbuf *out, const value_desc *desc) {
     strbuf name = {0}, help = {0};
     value_show(desc, NULL, NULL, &name);
     strbuf_add(&help, "%s%s", desc->help, desc->required ? "; required" : "");
-    entry(out, strbuf_text(&name), strbuf_text(&help));
+    info_add_entry(out, strbuf_text(&name), strbuf_text(&help));
     strbuf_free(&name);
     strbuf_free(&help);
 }
@@ -101,7 +101,7 @@ static void print_field(strbuf *out, const shader_field *f) {
     value_desc desc = info_field(f);
     strbuf_add(&name, "%s ", f->glsl_type);
     value_show(&desc, f->name, f->value, &name);
-    entry(out, strbuf_text(&name), f->help);
+    info_add_entry(out, strbuf_text(&name), f->help);
     strbuf_free(&name);
 }
 
@@ -116,7 +116,7 @@ static void print_interface(strbuf *out, const shader_interface *face) {
         strbuf name = {0};
         strbuf_add(&name, "%s%s", face->images[i].name,
                    face->images[i].optional ? " (optional)" : "");
-        entry(out, strbuf_text(&name), face->images[i].help);
+        info_add_entry(out, strbuf_text(&name), face->images[i].help);
         strbuf_free(&name);
     }
     if (face->field_count) strbuf_add(out, "\nfields\n");
@@ -131,12 +131,12 @@ static void print_interface(strbuf *out, const shader_interface *face) {
         if (!face->images[i].output) continue;
         strbuf name = {0};
         strbuf_add(&name, "%s %s", face->images[i].name, gpu_format_name(face->images[i].format));
-        entry(out, strbuf_text(&name), face->images[i].help);
+        info_add_entry(out, strbuf_text(&name), face->images[i].help);
         strbuf_free(&name);
     }
     for (size_t i = 0; i < face->counter_count; i++) {
         if (i == 0) strbuf_add(out, "\ncounters (render --stats)\n");
-        entry(out, face->counters[i].name, face->counters[i].help);
+        info_add_entry(out, face->counters[i].name, face->counters[i].help);
     }
 }
 
@@ -151,7 +151,7 @@ static bool print_pass(strbuf *out, shader_library *library, const pass_type *ty
         char *end = strstr(summary, ". ");
         if (!end) end = strchr(summary, '\n');
         if (end) *end = '\0';
-        entry(out, type->name, summary);
+        info_add_entry(out, type->name, summary);
     }
     arena_free(&memory);
     return face != NULL;
@@ -244,7 +244,7 @@ static char *refuse_field(const char *name) {
 static void print_line(strbuf *out, const char *name, const char *summary) {
     strbuf first = {0};
     add_first_sentence(&first, summary);
-    entry(out, name, strbuf_text(&first));
+    info_add_entry(out, name, strbuf_text(&first));
     strbuf_free(&first);
 }
 
@@ -302,7 +302,7 @@ static void print_control(roil_effect *e, size_t index, strbuf *out) {
     if (c.driven) strbuf_add(&help, "%s(the script moves it)", help.length ? " " : "");
     if (c.moved)
         strbuf_add(&help, "%s(moved; the script says %s)", help.length ? " " : "", own->initial);
-    entry(out, strbuf_text(&name), strbuf_text(&help));
+    info_add_entry(out, strbuf_text(&name), strbuf_text(&help));
     strbuf_free(&name);
     strbuf_free(&help);
 }

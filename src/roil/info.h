@@ -7,6 +7,8 @@
 // An option of a kind of field, and a field that a pass takes, as values.
 value_desc info_option(const field_option *o);
 value_desc info_field(const shader_field *f);
+// Appends a line of a list: a name, and in a column of its own what is said of it.
+void info_add_entry(strbuf *out, const char *name, const char *help);
 const char *info_device_kind(gpu_kind kind); // "discrete GPU"
 
 // The reference as a tree, as roil_info_json describes it; NULL with a message. json_decref()

@@ -224,6 +224,13 @@ roil_effect *roil_load_inside(roil *r, const char *folder, const char *file,
     return NULL;
 }
 
+size_t roil_files(const roil_effect *e, const char **out, size_t capacity) {
+    const char *const *files;
+    size_t count = effect_files(e->effect, &files);
+    for (size_t i = 0; i < count && i < capacity; i++) out[i] = files[i];
+    return count;
+}
+
 void roil_unload(roil_effect *e) {
     if (!e) return;
     effect_destroy(e->effect);
