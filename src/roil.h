@@ -69,6 +69,12 @@ typedef struct roil_desc {
     // Path of the program roil-reader. It runs as a child process and reads shaders, meshes and
     // pictures. NULL: $ROIL_READER, or else the one beside the program.
     const char *reader;
+    // Folders that effects may read files of, by their names there, besides the effect's own
+    // folder: at most 8, ending with NULL. Those of $ROIL_ASSETS (separated by ':') come after
+    // these, and then those that the file roil.json names, {"assets": ["models"]}, which lies in
+    // the effect's folder or above it, and whose folders lie below it. Of several files of a name
+    // the first counts. NULL: none.
+    const char *const *assets;
     bool no_device;     // use no device: effects can only be loaded and checked
     bool no_cache;      // do not read or write compiled shaders on disk
     bool validate;      // enable Vulkan's validation layers; $ROIL_VALIDATE=1 does too

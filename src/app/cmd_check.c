@@ -36,11 +36,13 @@ int cmd_check(int argc, const char **argv) {
     enum { OPTION_PRESET = 1 };
     app_progress progress = {0};
     int json = 0;
+    const char **assets = NULL;
     roil_desc desc = {.no_device = true, .loading = app_tell_files, .user = &progress};
     const struct poptOption options[] = {{"preset", '\0', POPT_ARG_STRING, NULL, OPTION_PRESET,
                                           "with values kept beside the effect, or in a file",
                                           "NAME|FILE.lua"},
                                          APP_JSON_ROW(&json),
+                                         APP_ASSETS_ROW(&assets),
                                          APP_MEMORY_ROW(&desc.memory),
                                          APP_TIME_ROW(&desc.time_limit),
                                          POPT_AUTOHELP POPT_TABLEEND};
@@ -56,6 +58,7 @@ int cmd_check(int argc, const char **argv) {
     } else if (!files || !files[0]) {
         status = app_fail(APP_BAD_USAGE, "check: which effect? usage: roil check EFFECT.lua...");
     } else {
+        desc.assets = assets;
         status = check_files(files, &settings, &desc, json);
     }
     app_free_settings(&settings);

@@ -13,6 +13,7 @@ typedef struct info_job {
     const char *what, *name;
     app_settings settings;
     const char *memory, *output;
+    const char **assets;
     int json, lua_meta;
 } info_job;
 
@@ -55,8 +56,11 @@ static int info_effect(info_job *j) {
     bool graph = strcmp(j->what, "graph") == 0;
     if (!file) return app_fail(APP_BAD_USAGE, "info %s: of which effect?", j->what);
     app_progress files = {0};
-    roil *r = roil_create(&(roil_desc){
-        .no_device = true, .memory = j->memory, .loading = app_tell_files, .user = &files});
+    roil *r = roil_create(&(roil_desc){.no_device = true,
+                                       .assets = j->assets,
+                                       .memory = j->memory,
+                                       .loading = app_tell_files,
+                                       .user = &files});
     bool collected = r && app_collect_settings(&j->settings, r, file, NULL);
     roil_effect *e = collected ? roil_load(r, file, j->settings.all, j->settings.count) : NULL;
     int status;
@@ -156,6 +160,7 @@ int cmd_info(int argc, const char **argv) {
         {"lua-meta", '\0', POPT_ARG_NONE, &j.lua_meta, 0,
          "print annotations for lua-language-server: every function, key, unit and word", NULL},
         APP_JSON_ROW(&j.json),
+        APP_ASSETS_ROW(&j.assets),
         APP_MEMORY_ROW(&j.memory),
         POPT_AUTOHELP POPT_TABLEEND};
     poptContext context = poptGetContext("roil info", argc, argv, options, 0);

@@ -10,6 +10,7 @@ struct poptOption app_device_rows(app_device *d) {
         {"timeout", '\0', POPT_ARG_DOUBLE, &d->timeout, 0,
          "time limit of a frame, after which the device counts as lost (default: 30, software 300)",
          "SECONDS"},
+        APP_ASSETS_ROW(&d->assets),
         APP_MEMORY_ROW(&d->memory),
         APP_TIME_ROW(&d->time_limit),
         {"validate", '\0', POPT_ARG_NONE, &d->validate, 0, "enable the Vulkan validation layers",
@@ -35,5 +36,6 @@ roil_desc app_device_desc(const app_device *d) {
                        .no_cache = d->no_cache,
                        .timeout = d->timeout,
                        .memory = d->memory,
+                       .assets = d->assets,
                        .time_limit = d->time_limit};
 }

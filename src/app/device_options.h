@@ -22,12 +22,20 @@
 #define APP_JSON_ROW(to)                                                                           \
     { "json", '\0', POPT_ARG_NONE, (to), 0, "print JSON, for programs", NULL }
 
+// The row of commands that load effects. `to`: address of a const char **, NULL at first.
+#define APP_ASSETS_ROW(to)                                                                         \
+    {                                                                                              \
+        "assets", '\0', POPT_ARG_ARGV, (to), 0,                                                    \
+            "a folder that effects may read besides their own; may be given several times", "DIR"  \
+    }
+
 typedef struct app_device {
     const char *name;
     double timeout, time_limit; // seconds; 0: the default of roil_desc
     int validate, no_cache;
     const char *memory; // NULL: the default of roil_desc
-    struct poptOption rows[7];
+    const char **assets;
+    struct poptOption rows[8];
 } app_device;
 
 // The row of commands with or without a device. `to`: address of a const char *.

@@ -50,6 +50,10 @@ static void add_device(arguments *a, const app_device *d) {
     if (d->name) argument_add(a, d->name);
     if (d->memory) argument_add(a, "--memory");
     if (d->memory) argument_add(a, d->memory);
+    for (size_t i = 0; d->assets && d->assets[i]; i++) {
+        argument_add(a, "--assets");
+        argument_add(a, d->assets[i]);
+    }
     if (d->validate) argument_add(a, "--validate");
     if (d->no_cache) argument_add(a, "--no-cache");
     add_option(a, "--timeout", d->timeout);

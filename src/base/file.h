@@ -82,6 +82,11 @@ const char *path_extension(const char *path);           // "a/b.tar.gz" -> "gz",
 // The file itself need not exist; a wildcard in the last component is allowed.
 bool path_confine(char out[PATH_CAP], const char *root, const char *name);
 
+// Finds a file by its name in the first folder that has one; wildcards are allowed as above.
+// Returns that folder, or the first where none has it. NULL with a message: the name leads out.
+const char *path_find(char out[PATH_CAP], const char *const *folders, size_t count,
+                      const char *name);
+
 // False, with a message, unless the existing file `path`, symbolic links followed, lies in `root`.
 bool path_require_inside(const char *root, const char *path);
 bool path_require_all_inside(const char *root, const char *const *paths, size_t count);

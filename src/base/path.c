@@ -110,6 +110,27 @@ bool path_confine(char out[PATH_CAP], const char *root, const char *name) {
     return lies_inside(real_root, out) || path_refuse(name, real_root);
 }
 
+static bool is_there(const char *path) {
+    file_list list = {0};
+    if (!strpbrk(path_name(path), "*?[")) return file_exists(path);
+    bool found = file_glob(path, &list) && list.count > 0;
+    file_list_free(&list);
+    return found;
+}
+
+const char *path_find(char out[PATH_CAP], const char *const *folders, size_t count,
+                      const char *name) {
+    if (!path_confine(out, folders[0], name)) return NULL;
+    if (count == 1 || is_there(out)) return folders[0];
+    char other[PATH_CAP];
+    for (size_t i = 1; i < count; i++)
+        if (path_confine(other, folders[i], name) && is_there(other)) {
+            str_copy(out, PATH_CAP, other);
+            return folders[i];
+        }
+    return folders[0];
+}
+
 bool path_require_all_inside(const char *root, const char *const *paths, size_t count) {
     char real_root[PATH_MAX], real[PATH_MAX];
     if (!real_folder(real_root, root)) return false;

@@ -33,7 +33,9 @@ effect *effect_create(const effect_desc *desc) {
     e->seconds = desc->seconds > 0 ? desc->seconds : TIME_LIMIT_LOAD_SECONDS;
     e->file = arena_string(&e->memory, desc->file);
     e->inside = desc->inside ? arena_string(&e->memory, desc->inside) : NULL;
-    e->root = arena_string(&e->memory, folder);
+    e->roots[e->root_count++] = arena_string(&e->memory, folder);
+    for (size_t i = 0; i < desc->asset_count; i++)
+        e->roots[e->root_count++] = arena_string(&e->memory, desc->assets[i]);
     e->name = arena_string(&e->memory, path_name(desc->file));
     e->fps = 24;
     e->updated = (double)NAN;
@@ -46,7 +48,9 @@ effect *effect_create(const effect_desc *desc) {
         bool cached = desc->cache_dir && path_join(shader_cache, desc->cache_dir, "spirv");
         e->library = e->own_library = shader_library_create(&(shader_library_desc){
             .shader_root = desc->shader_root,
-            .effect_root = e->root,
+            .effect_root = e->roots[0],
+            .assets = desc->assets,
+            .asset_count = desc->asset_count,
             .cache_dir = cached ? shader_cache : NULL,
             .remembers = true,
         });
@@ -75,6 +79,7 @@ effect *effect_create(const effect_desc *desc) {
     };
     effect_copy_settings(e, desc->settings, desc->setting_count);
     effect_add_file(e, desc->file);
+    if (desc->project) effect_add_file(e, desc->project);
     return e;
 }
 
@@ -121,7 +126,12 @@ arena *effect_memory(effect *e) {
     return &e->memory;
 }
 const char *effect_root(const effect *e) {
-    return e->root;
+    return e->roots[0];
+}
+
+size_t effect_roots(const effect *e, const char *const **out) {
+    *out = e->roots;
+    return e->root_count;
 }
 double effect_seconds(const effect *e) {
     return e->seconds;
@@ -202,6 +212,20 @@ void effect_add_file(effect *e, const char *path) {
         if (strcmp(e->files[i], path) == 0) return;
     MEM_RESERVE(e->files, e->file_count + 1, e->file_capacity);
     e->files[e->file_count++] = arena_string(&e->memory, path);
+}
+
+const char *effect_find_file(effect *e, const char *name, char path[PATH_CAP]) {
+    const char *root = path_find(path, e->roots, e->root_count, name);
+    if (root) {
+        effect_add_file(e, path);
+        return root;
+    }
+    char why[512];
+    str_copy(why, sizeof why, err_get());
+    err_set("%s. Put a copy there, or give its folder as --assets DIR and here its name in that "
+            "folder",
+            why);
+    return NULL;
 }
 
 size_t effect_files(const effect *e, const char *const **out) {
@@ -289,12 +313,12 @@ typedef struct shared_load {
 typedef const void *loader(shared_load *load); // NULL with a message
 
 // Returns what is cached under the key, or else loaded now; NULL with a message.
-static const void *load_shared(effect *e, const char *key, const char *path, uint32_t side_max,
-                               loader *read) {
+static const void *load_shared(effect *e, const char *key, const char *root, const char *path,
+                               uint32_t side_max, loader *read) {
     content_cache_item *item = content_cache_take(e->contents, key);
     if (!item) {
         arena memory = {0};
-        shared_load load = {path, e->root, side_max, &memory, &path, 1};
+        shared_load load = {path, root, side_max, &memory, &path, 1};
         int64_t begin = file_clock_ns();
         const void *data = read(&load);
         if (!data) {
@@ -309,13 +333,6 @@ static const void *load_shared(effect *e, const char *key, const char *path, uin
     return item->data;
 }
 
-// Sets the path of a file of the effect, which is watched from now on even if it cannot be read.
-static bool find_file(effect *e, const char *file, char path[PATH_CAP]) {
-    if (!path_confine(path, e->root, file)) return false;
-    effect_add_file(e, path);
-    return true;
-}
-
 static const void *load_mesh(shared_load *l) {
     mesh_data *data = arena_alloc(l->memory, sizeof *data);
     if (!mesh_load(l->path, l->root, l->memory, data)) return NULL;
@@ -327,8 +344,9 @@ static const void *load_mesh(shared_load *l) {
 scene_mesh *effect_add_mesh(effect *e, const char *file) {
     char path[PATH_CAP];
     arena *memory = &e->memory;
-    if (!find_file(e, file, path)) return NULL;
-    const mesh_data *data = load_shared(e, path, path, 0, load_mesh);
+    const char *root = effect_find_file(e, file, path);
+    if (!root) return NULL;
+    const mesh_data *data = load_shared(e, path, root, path, 0, load_mesh);
     if (!data) return NULL;
     scene_mesh *mesh = arena_alloc(memory, sizeof *mesh);
     mesh->data = *data;
@@ -373,8 +391,10 @@ static const void *load_texture(shared_load *l) {
 
 const mesh_texture *effect_add_texture(effect *e, const char *file) {
     char path[PATH_CAP];
-    if (!find_file(e, file, path)) return NULL;
-    return load_shared(e, arena_format(&e->memory, "texture %s", path), path, 0, load_texture);
+    const char *root = effect_find_file(e, file, path);
+    if (!root) return NULL;
+    const char *key = arena_format(&e->memory, "texture %s", path);
+    return load_shared(e, key, root, path, 0, load_texture);
 }
 
 static const void *load_sky(shared_load *l) {
@@ -383,14 +403,14 @@ static const void *load_sky(shared_load *l) {
 
 const sky_image *effect_add_sky_image(effect *e, const char *file) {
     char path[PATH_CAP];
-    if (!path_confine(path, e->root, file)) return NULL;
+    const char *root = effect_find_file(e, file, path);
+    if (!root) return NULL;
     if (e->sky && strcmp(e->sky_file, path) == 0) return e->sky;
-    effect_add_file(e, path); // even if it cannot be read
     if (e->sky) {
         err_set("%s: a second image for the sky; an effect has one", file);
         return NULL;
     }
-    const sky_image *image = load_shared(e, path, path, 0, load_sky);
+    const sky_image *image = load_shared(e, path, root, path, 0, load_sky);
     e->sky = image ? sky_image_share(image, &e->memory) : NULL;
     e->sky_file = arena_string(&e->memory, path);
     return e->sky;
@@ -403,9 +423,10 @@ static const void *load_picture(shared_load *l) {
 
 const picture *effect_read_picture(effect *e, const char *file, uint32_t side_max) {
     char path[PATH_CAP];
-    if (!find_file(e, file, path)) return NULL;
+    const char *root = effect_find_file(e, file, path);
+    if (!root) return NULL;
     const char *key = arena_format(&e->memory, "picture up to %u: %s", side_max, path);
-    return load_shared(e, key, path, side_max, load_picture);
+    return load_shared(e, key, root, path, side_max, load_picture);
 }
 
 static bool set_picture(effect *e, effect_picture which, graph_image image) {

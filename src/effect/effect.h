@@ -25,12 +25,16 @@ typedef struct effect_setting { // see effect_set
     const char *initial;
 } effect_setting;
 
+enum { EFFECT_MAX_ASSETS = 8 };
 typedef struct effect_desc {
     gpu *device;        // NULL: check only
     const char *file;   // the effect's .lua file
     const char *inside; // folder that it must lie in when it is opened; NULL: its user named it
-    const char *shader_root; // the program's shaders
-    const char *cache_dir;   // NULL: no caches
+    const char *const *assets; // folders that it may read besides its own
+    size_t asset_count;        // up to EFFECT_MAX_ASSETS
+    const char *project;       // the file that names some of them, which is watched; NULL: none
+    const char *shader_root;   // the program's shaders
+    const char *cache_dir;     // NULL: no caches
     bool counters;
     bool interaction; // pass_host.interaction
     bool never_waits; // field_grid.never_waits, of all grids
@@ -51,8 +55,13 @@ void effect_destroy(effect *e);
 
 // ---- declaring (script) -----------------------------------------------------------------------
 
-arena *effect_memory(effect *e);          // lives as long as the effect
-const char *effect_root(const effect *e); // folder of its file
+arena *effect_memory(effect *e);                               // lives as long as the effect
+const char *effect_root(const effect *e);                      // folder of its file
+size_t effect_roots(const effect *e, const char *const **out); // that, and those of assets
+// Finds a file of the effect by its name: in its folder, else in those of assets. `path`, which may
+// have a wildcard in its last component, is watched from now on even if there is no such file.
+// Returns the folder, in which whoever reads it must stay. NULL with a message.
+const char *effect_find_file(effect *e, const char *name, char path[4096]);
 const char *effect_file(const effect *e);
 const char *effect_inside(const effect *e); // effect_desc.inside
 double effect_seconds(const effect *e);     // that a load may take

@@ -100,7 +100,9 @@ void events_control_print(const effect *e, strbuf *out);
 struct effect {
     arena memory;
     gpu *device;
-    const char *file, *root, *name;
+    const char *file, *name;
+    const char *roots[1 + EFFECT_MAX_ASSETS]; // folders that it may read, its own first
+    size_t root_count;
     const char *inside;                    // effect_desc
     shader_library *library, *own_library; // the latter NULL when it is shared
     scene scene;

@@ -221,12 +221,17 @@ static bool make_library(roil_live *l) {
     char folder[PATH_CAP], cache[PATH_CAP];
     path_folder(folder, l->file);
     bool cached = l->owner->cache && path_join(cache, l->owner->cache, "spirv");
+    roil_assets assets; // those of a project file that is wrong are read once it is mended
+    if (!roil_find_assets(l->owner, l->file, &assets)) assets.count = 0;
     l->library = shader_library_create(&(shader_library_desc){
         .shader_root = l->owner->shaders,
         .effect_root = folder,
+        .assets = assets.folders,
+        .asset_count = assets.count,
         .cache_dir = cached ? cache : NULL,
         .remembers = true,
     });
+    arena_free(&assets.memory);
     return l->library != NULL;
 }
 

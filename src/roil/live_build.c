@@ -138,10 +138,17 @@ static order take_order(roil_live *l) {
 static effect *builder_load(roil_live *l, const order *o, file_set *files) {
     const roil *r = l->owner;
     const char *const *read;
-    effect_desc desc = roil_effect_desc(r, l->file, o->settings, o->setting_count);
-    desc.library = l->library;
-    desc.contents = l->contents;
-    effect *e = effect_create(&desc);
+    roil_assets assets;
+    effect *e = NULL;
+    if (roil_find_assets(r, l->file, &assets)) {
+        effect_desc desc = roil_effect_desc(r, l->file, &assets, o->settings, o->setting_count);
+        desc.library = l->library;
+        desc.contents = l->contents;
+        e = effect_create(&desc);
+    } else if (assets.project) {
+        add_files(files, &assets.project, 1);
+    }
+    arena_free(&assets.memory);
     bool done = e && script_load(e, r->scripts) && effect_check_settings(e) && effect_compile(e) &&
                 effect_rehearse(e, o->framed ? o->frame : effect_first_frame(e));
     if (e) add_files(files, read, effect_files(e, &read));

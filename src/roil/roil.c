@@ -107,7 +107,7 @@ roil *roil_create(const roil_desc *desc) {
     // Without a place for it (no home folder, a read-only one) roil works, only slower.
     if (!desc->no_cache && path_cache_folder(cache, "")) r->cache = joined(cache, "");
     if (will_compile(r, desc)) isolate_warm_up("glsl");
-    if (desc->no_device || open_device(r, desc)) return r;
+    if (roil_take_assets(r, desc) && (desc->no_device || open_device(r, desc))) return r;
     roil_destroy(r);
     return NULL;
 }
@@ -120,6 +120,7 @@ void roil_destroy(roil *r) {
     mem_free(r->shaders);
     mem_free(r->scripts);
     mem_free(r->cache);
+    for (size_t i = 0; i < r->asset_count; i++) mem_free(r->assets[i]);
     mem_free(r);
 }
 
@@ -188,11 +189,14 @@ roil_effect *roil_load(roil *r, const char *file, const roil_setting *settings, 
     return roil_load_inside(r, NULL, file, settings, count);
 }
 
-effect_desc roil_effect_desc(const roil *r, const char *file, const effect_setting *settings,
-                             size_t count) {
+effect_desc roil_effect_desc(const roil *r, const char *file, const roil_assets *assets,
+                             const effect_setting *settings, size_t count) {
     return (effect_desc){
         .device = r->device,
         .file = file,
+        .assets = assets->folders,
+        .asset_count = assets->count,
+        .project = assets->project,
         .shader_root = r->shaders,
         .cache_dir = r->cache,
         .counters = r->counters,
@@ -212,9 +216,13 @@ roil_effect *roil_load_inside(roil *r, const char *folder, const char *file,
         own[i] = (effect_setting){.name = settings[i].name, .text = settings[i].value};
     roil_effect *e = mem_alloc(sizeof *e);
     e->owner = r;
-    effect_desc desc = roil_effect_desc(r, file, own, count);
-    desc.inside = folder;
-    e->effect = effect_create(&desc);
+    roil_assets assets;
+    if (roil_find_assets(r, file, &assets)) {
+        effect_desc desc = roil_effect_desc(r, file, &assets, own, count);
+        desc.inside = folder;
+        e->effect = effect_create(&desc);
+    }
+    arena_free(&assets.memory);
     mem_free(own);
     time_limit time = roil_time_limit(r), *before = time_limit_enter(&time);
     bool done = e->effect && script_load(e->effect, r->scripts) && effect_check_settings(e->effect);

@@ -11,6 +11,8 @@ typedef struct template_file template_file; // roil/template.c
 struct roil {
     gpu *device; // NULL: no_device
     char *home, *shaders, *scripts, *cache;
+    char *assets[EFFECT_MAX_ASSETS]; // of roil_desc and the environment
+    size_t asset_count;
     bool counters, window, never_waits, interaction;
     bool stuck; // an abandoned thread still uses it (roil_live_destroy)
     uint32_t reference;
@@ -50,10 +52,21 @@ const uint16_t *roil_srgb_fine_table(void);
 // Returns the dither threshold of a pixel; v stands for (v + 0.5) / 256.
 uint8_t roil_dither_noise(size_t x, size_t y, int channel);
 
+// The folders besides its own that an effect may read.
+typedef struct roil_assets {
+    arena memory;
+    const char *folders[EFFECT_MAX_ASSETS], *project; // the file that names some; NULL: none
+    size_t count;
+} roil_assets;
+// Takes those of roil_desc and the environment into `r`. False with a message.
+bool roil_take_assets(roil *r, const roil_desc *desc);
+// False with a message: the file "roil.json" is wrong. arena_free(&out->memory) in either case.
+bool roil_find_assets(const roil *r, const char *file, roil_assets *out);
+
 time_limit roil_time_limit(const roil *r); // a new limit for a load
 // What an effect is created with, by the options of `r`; the other members are zero.
-effect_desc roil_effect_desc(const roil *r, const char *file, const effect_setting *settings,
-                             size_t count);
+effect_desc roil_effect_desc(const roil *r, const char *file, const roil_assets *assets,
+                             const effect_setting *settings, size_t count);
 
 void roil_free_view(roil *r);
 void roil_free_templates(roil_effect *e); // after the effect itself

@@ -17,17 +17,19 @@ typedef struct sequence_object {
 
 // ---- sequences --------------------------------------------------------------------------------
 
-static const char *read_pattern(lua_State *L, const char *who) {
+// Sets the pattern of the files, and the folder that they are in.
+static void read_pattern(lua_State *L, const char *who, sequence_desc *desc) {
     if (lua_rawlen(L, 1) != 1 || lua_rawgeti(L, 1, 1) != LUA_TSTRING)
         vm_error(L, "%s: its files come first, as in %s { \"data/name.%s\" }", who, who, who);
     char path[PATH_CAP];
     size_t length;
     const char *name = lua_tolstring(L, -1, &length);
     if (strlen(name) != length) vm_error(L, "%s: the file name contains a zero byte", who);
-    if (!path_confine(path, effect_root(script_of(L)->effect), name)) script_raise(L);
+    desc->root = effect_find_file(script_of(L)->effect, name, path);
+    if (!desc->root) script_raise(L);
     vm_charge_memory(L, SEQUENCE_COST);
     lua_pop(L, 1);
-    return arena_string(script_memory(L), path);
+    desc->pattern = arena_string(script_memory(L), path);
 }
 
 // Reads a number that must not be zero, which a sequence_desc takes for its default.
@@ -67,8 +69,7 @@ static void read_speed(lua_State *L, const char *who, sequence_desc *desc, playe
 
 static played read_playback(lua_State *L, const script_object *row, sequence_desc *desc) {
     const char *who = row->name;
-    desc->pattern = read_pattern(L, who);
-    desc->root = effect_root(script_of(L)->effect);
+    read_pattern(L, who, desc);
     desc->contents = effect_content_cache(script_of(L)->effect);
     desc->fps = read_factor(L, who, "fps", 24);
     desc->loop = (sequence_loop)value_get_choice(L, 1, row, "loop");
@@ -86,7 +87,6 @@ static played read_playback(lua_State *L, const script_object *row, sequence_des
 static int push_sequence(lua_State *L, const sequence_desc *desc, const played *how) {
     sequence_object *object = object_new(L, "sequence", sizeof *object);
     effect *e = script_of(L)->effect;
-    effect_add_file(e, desc->pattern); // new frames count as a change too
     object->sequence = sequence_create(script_memory(L), desc);
     if (!object->sequence) script_raise(L);
     effect_add_grid(e, sequence_grid(object->sequence));

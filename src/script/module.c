@@ -1,4 +1,5 @@
-// `require "name"`: runs name.lua of the effect's folder, or else of the library's. Each module
+// `require "name"`: runs name.lua of the effect's folder, or else of those of assets or the
+// library's. Each module
 // runs once; its result (or true) is remembered.
 #include "base/file.h"
 #include "script/vm.h"
@@ -33,8 +34,8 @@ static void fail_missing(lua_State *L, const char *name, const char *file) {
     char path[PATH_CAP];
     if (desc->on_file && desc->root && path_join(path, desc->root, file))
         desc->on_file(desc->user, path);
-    vm_error(L, "require: no module '%s': there is no %s in the effect's folder or the library",
-             name, file);
+    vm_error(L, "require: no module '%s': there is no %s in the effect's folder%s or the library",
+             name, file, desc->asset_count ? ", those of --assets," : "");
 }
 
 // Upvalue: table of modules by name; `false` while one is loading.
@@ -58,18 +59,21 @@ static int l_require(lua_State *L) {
     for (size_t i = 0; i < length; i++)
         if (file[i] == '.') file[i] = '/';
     const vm_desc *desc = vm_get_desc(L);
-    bool ours = false;
-    if (find_in(L, desc->root, file, path))
-        snprintf(shown, sizeof shown, "%s%s", desc->shown, file);
-    else if ((ours = find_in(L, desc->library, file, path)))
-        snprintf(shown, sizeof shown, "lib/%s", file);
-    else
-        fail_missing(L, name, file);
+    const char *root = find_in(L, desc->root, file, path) ? desc->root : NULL;
+    if (root) snprintf(shown, sizeof shown, "%s%s", desc->shown, file);
+    for (size_t i = 0; !root && i < desc->asset_count; i++) {
+        if (!find_in(L, desc->assets[i], file, path)) continue;
+        root = desc->assets[i];
+        snprintf(shown, sizeof shown, "%s/%s", root, file);
+    }
+    bool ours = !root && find_in(L, desc->library, file, path);
+    if (ours) snprintf(shown, sizeof shown, "lib/%s", file);
+    if (!root && !ours) fail_missing(L, name, file);
 
     lua_pushvalue(L, 1);
     lua_pushboolean(L, false);
     lua_rawset(L, lua_upvalueindex(1));
-    vm_load_chunk(L, ours ? desc->library : desc->root, path, shown, ours);
+    vm_load_chunk(L, ours ? desc->library : root, path, shown, ours);
     lua_pushvalue(L, 1);
     lua_call(L, 1, 1);
     if (!lua_toboolean(L, -1)) {

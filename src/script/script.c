@@ -205,8 +205,12 @@ bool script_load_limited(effect *e, const char *prelude_folder, const script_lim
     if (!s->limits.memory) s->limits.memory = MEMORY_LIMIT;
     if (!s->limits.load) s->limits.load = LOAD_LIMIT;
     if (!s->limits.frame) s->limits.frame = FRAME_LIMIT;
+    const char *const *roots;
+    size_t root_count = effect_roots(e, &roots);
     s->vm = vm_create(&(vm_desc){
-        .root = effect_root(e),
+        .root = roots[0],
+        .assets = roots + 1,
+        .asset_count = root_count - 1,
         .library = library,
         .shown = shown,
         .memory = s->limits.memory,

@@ -545,6 +545,10 @@ vm *vm_create(const vm_desc *desc) {
     v->desc = *desc;
     if (!desc->longest) v->desc.longest = VM_STRING_MAX;
     v->desc.root = arena_string(&v->memory, desc->root);
+    const char **assets = arena_alloc(&v->memory, desc->asset_count * sizeof *assets);
+    for (size_t i = 0; i < desc->asset_count; i++)
+        assets[i] = arena_string(&v->memory, desc->assets[i]);
+    v->desc.assets = assets;
     v->desc.library = desc->library ? arena_string(&v->memory, desc->library) : NULL;
     v->desc.shown = arena_string(&v->memory, desc->shown ? desc->shown : "");
     v->random = desc->seed;

@@ -13,8 +13,10 @@ enum { VM_STRING_MAX = 4 << 20 }; // bytes of one string of a script
 typedef struct vm vm;
 
 typedef struct vm_desc {
-    const char *root;     // folder that `require` searches first and does not leave
-    const char *library;  // folder that it searches next; NULL: none
+    const char *root;          // folder that `require` searches first and does not leave
+    const char *const *assets; // folders that it searches next
+    size_t asset_count;
+    const char *library;  // folder that it searches last; NULL: none
     const char *shown;    // how messages name `root`: "" or "effects/"; NULL: ""
     size_t memory;        // bytes
     size_t longest;       // bytes of one string; 0: VM_STRING_MAX

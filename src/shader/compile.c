@@ -54,7 +54,7 @@ static bool reflect(job *j, spirv *code, arena *memory, shader_binary *out) {
 // are known to be valid.
 static bool is_strange(const shader_unit *unit) {
     for (size_t i = 0; i < unit->file_count; i++)
-        if (unit->files[i].where.root == ROOT_EFFECT && unit->files[i].where.path) return true;
+        if (unit->files[i].where.root < ROOT_PROGRAM && unit->files[i].where.path) return true;
     return false;
 }
 

@@ -3,8 +3,8 @@
 // A file is copied line by line; `#include "x"` is replaced by the file it names, between `#line`
 // directives, so that every message of the compiler carries the true file (as a number) and line.
 // Where x is looked for, in this order: the generated texts, beside the includer, the effect's
-// folder, the program's folder. Files of the program never see the effect's folder, so nothing a
-// user names can replace a part of a built-in shader.
+// folder, those of assets, the program's folder. Files of the program see neither the effect's
+// folder nor assets, so nothing a user names can replace a part of a built-in shader.
 //
 // Invariants: a file is in a unit at most once; every file's block comments are closed, so text
 // never runs from one file into the next; conditions are not evaluated, an #include in a branch
@@ -55,7 +55,7 @@ int unit_find(const shader_library *library, const library_file *from, const cha
         if (found < 0) escaped = found;
     }
     for (library_root root = ROOT_EFFECT; root < ROOT_COUNT && !escaped; root++) {
-        if (root == ROOT_EFFECT && home == ROOT_PROGRAM) continue;
+        if (root < ROOT_PROGRAM && home == ROOT_PROGRAM) continue;
         int found = library_find(library, root, "", name, memory, out);
         if (found) return found;
     }
@@ -95,7 +95,7 @@ static bool fail_missing(const loader *l, place at, const char *name) {
     library_root home = at.file < 0 ? ROOT_NONE : l->unit->files[at.file].where.root;
     const char *joint = "; looked in ";
     for (library_root root = ROOT_EFFECT; root < ROOT_COUNT; root++) {
-        if (!l->library->roots[root] || (root == ROOT_EFFECT && home == ROOT_PROGRAM)) continue;
+        if (!l->library->roots[root] || (root < ROOT_PROGRAM && home == ROOT_PROGRAM)) continue;
         strbuf_add(&message, "%s%s", joint, l->library->roots[root]);
         joint = " and ";
     }

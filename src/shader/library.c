@@ -1,6 +1,6 @@
-// Two folders of shaders: the effect's and the program's. A name is first normalised as text, so
-// that "pass/../lib/a.glsl" works and "../a.glsl" does not; then path_confine ensures that no
-// symbolic link leads out of the folder.
+// Folders of shaders: the effect's, those of assets, the program's. A name is first normalised as
+// text, so that "pass/../lib/a.glsl" works and "../a.glsl" does not; then path_confine ensures that
+// no symbolic link leads out of the folder.
 #include "base/file.h"
 #include "base/log.h"
 #include "base/memory.h"
@@ -23,6 +23,7 @@ static bool is_private(const char *folder) {
 shader_library *shader_library_create(const shader_library_desc *desc) {
     const char *roots[ROOT_COUNT] = {
         [ROOT_EFFECT] = desc->effect_root, [ROOT_PROGRAM] = desc->shader_root};
+    for (size_t i = 0; i < desc->asset_count; i++) roots[ROOT_ASSETS + i] = desc->assets[i];
     for (int i = 0; i < ROOT_COUNT; i++) {
         if (roots[i] && !file_is_folder(roots[i])) {
             err_set("%s: no such folder of shaders", roots[i]);

@@ -85,11 +85,14 @@ typedef struct shader_interface {
 
 typedef struct shader_library shader_library;
 
+enum { SHADER_MAX_ASSETS = 8 };
 typedef struct shader_library_desc {
-    const char *shader_root; // folder of the program's shaders; NULL: none
-    const char *effect_root; // folder of the effect: user shaders and their includes; NULL: none
-    const char *cache_dir;   // compiled SPIR-V by content hash; NULL: none
-    bool remembers;          // files are read once, until shader_library_forget
+    const char *shader_root;   // folder of the program's shaders; NULL: none
+    const char *effect_root;   // folder of the effect: user shaders and their includes; NULL: none
+    const char *const *assets; // folders that are searched after it
+    size_t asset_count;        // up to SHADER_MAX_ASSETS
+    const char *cache_dir;     // compiled SPIR-V by content hash; NULL: none
+    bool remembers;            // files are read once, until shader_library_forget
 } shader_library_desc;
 
 shader_library *shader_library_create(const shader_library_desc *desc);

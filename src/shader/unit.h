@@ -9,7 +9,13 @@
 
 // ---- library ----------------------------------------------------------------------------------
 
-typedef enum library_root { ROOT_EFFECT, ROOT_PROGRAM, ROOT_COUNT, ROOT_NONE } library_root;
+typedef enum library_root { // those of a user first, in the order in which they are searched
+    ROOT_EFFECT,
+    ROOT_ASSETS,
+    ROOT_PROGRAM = ROOT_ASSETS + SHADER_MAX_ASSETS,
+    ROOT_COUNT,
+    ROOT_NONE
+} library_root;
 
 typedef struct library_memo library_memo;
 typedef struct binary_memo binary_memo;
