@@ -10,6 +10,7 @@
 enum { APP_DONE = 0, APP_BAD_INPUT = 1, APP_BAD_USAGE = 2, APP_DIFFERS = 3 };
 
 int cmd_render(int argc, const char **argv);
+int cmd_repro(int argc, const char **argv);
 int cmd_new(int argc, const char **argv);
 int cmd_check(int argc, const char **argv);
 int cmd_info(int argc, const char **argv);

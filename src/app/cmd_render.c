@@ -164,8 +164,8 @@ static bool render_parse(job *j, int argc, const char **argv, poptContext *conte
         return err_set("which effect? usage: roil render EFFECT.lua [options]");
     const char *more = poptGetArg(*context);
     if (more) return err_set("'%s': one effect at a time", more);
-    if (j->warmup < 0 || j->warmup > 1000)
-        return err_set("--warmup %d; accepted: 0 to 1000 frames", j->warmup);
+    if (j->warmup < 0 || j->warmup > 100000)
+        return err_set("--warmup %d; accepted: 0 to 100000 frames", j->warmup);
     if (j->alpha && j->premultiplied)
         return err_set("--alpha is straight, --premultiplied is not: one of the two");
     if (j->warmup && j->restore) return err_set("--warmup and --restore exclude each other");

@@ -30,6 +30,7 @@ static const struct {
      "write the volumes of an effect as VDB files, or a VDB sequence as one raw file"},
     {"bench", cmd_bench, "measure a sweep: time, memory and error over settings of effects"},
     {"tune", cmd_tune, "find the settings that are cheapest within an error, or best in a time"},
+    {"repro", cmd_repro, "make a picture, film or volume again by what it holds, and compare"},
     {"compare", cmd_compare, "tell how different two pictures are: PSNR, SSIM, FLIP"},
 };
 

@@ -298,6 +298,8 @@ bool effect_rehearse(effect *e, double frame);
 // continue; decoded grids; meshes. `from` can then only be destroyed. On failure `from` is
 // unchanged.
 bool effect_adopt(effect *e, effect *from, uint32_t width, uint32_t height);
+// How many frames were drawn in a row before the last, if pictures depend on that.
+uint32_t effect_frames_before(const effect *e);
 size_t effect_files(const effect *e, const char *const **out); // absolute paths of all files read
 
 // Records and submits one frame. Frame numbers start at effect_first_frame; time = (frame - first)

@@ -38,14 +38,13 @@ static const char *find_text(const png_text *texts, size_t count, const char *ke
     return NULL;
 }
 
-static bool is_plain(const char *text) { // one line, without what terminals obey
+bool recipe_is_plain(const char *text) {
     for (; *text; text++)
         if (iscntrl((unsigned char)*text)) return false;
     return true;
 }
 
-// Returns whether a path stays below the current folder.
-static bool stays_below(const char *path) {
+bool recipe_stays_below(const char *path) {
     if (path[0] == '/') return false;
     for (const char *part = path; part; part = strchr(part, '/')) {
         if (*part == '/') part++;
@@ -55,9 +54,9 @@ static bool stays_below(const char *path) {
 }
 
 static bool read_file(const char *text, arena *memory, recipe *out) {
-    if (!str_ends_with(text, ".lua") || !is_plain(text) || strlen(text) >= PATH_CAP)
+    if (!str_ends_with(text, ".lua") || !recipe_is_plain(text) || strlen(text) >= PATH_CAP)
         return err_set("the recipe's effect is no .lua file");
-    out->file = stays_below(text) ? arena_string(memory, text) : NULL;
+    out->file = recipe_stays_below(text) ? arena_string(memory, text) : NULL;
     return true;
 }
 
@@ -78,7 +77,7 @@ static bool read_size(const char *text, recipe *out) {
                    SIDE_MAX);
 }
 
-static bool is_name(const char *text) {
+bool recipe_is_name(const char *text) {
     size_t length = strlen(text);
     if (length == 0 || length > NAME_MAX_LENGTH) return false;
     for (; *text; text++)
@@ -97,7 +96,7 @@ static bool read_settings(const char *text, arena *memory, recipe *out) {
         if (*next) *next++ = '\0';
         char *equals = strchr(line, '=');
         if (equals) *equals = '\0';
-        if (!equals || !is_name(line) || !is_plain(equals + 1))
+        if (!equals || !recipe_is_name(line) || !recipe_is_plain(equals + 1))
             return err_set("setting %zu of the recipe is wrong; accepted: NAME=VALUE",
                            out->setting_count + 1);
         out->settings[out->setting_count++] = (effect_setting){.name = line, .text = equals + 1};

@@ -17,3 +17,7 @@ enum { RECIPE_TEXTS = 5, RECIPE_MAX_SETTINGS = 4096 };
 void recipe_write(const effect *e, double frame, uint32_t width, uint32_t height, arena *memory,
                   png_text out[RECIPE_TEXTS]);
 bool recipe_read(const png_text *texts, size_t count, arena *memory, recipe *out);
+
+bool recipe_is_plain(const char *text);    // one line, without what terminals obey
+bool recipe_stays_below(const char *path); // as text: it does not leave the current folder
+bool recipe_is_name(const char *text);     // can be that of a control

@@ -294,12 +294,17 @@ uint64_t effect_render(effect *e, double frame, bool jump) {
         return 0;
     }
     e->counter++;
+    e->in_a_row = e->has_last ? e->in_a_row + 1 : 0;
     e->has_last = true;
     e->last_clip = e->clip;
     e->last_frame = frame;
     e->rendered_at = clock_seconds();
     if (e->never_waits) effect_keep_snapshot(e);
     return number;
+}
+
+uint32_t effect_frames_before(const effect *e) {
+    return graph_has_history(e->graph) ? e->in_a_row : 0;
 }
 
 // ---- taking over from another effect ----------------------------------------------------------

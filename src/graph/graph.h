@@ -69,6 +69,7 @@ bool graph_allocate(graph *g, gpu *device);
 // compiled for the same device. A graph that lacks images afterwards must be allocated before it
 // executes.
 void graph_adopt(graph *g, graph *from);
+bool graph_has_history(const graph *g); // after graph_compile: a pass that runs reads one
 // Makes every history zero again, as before the first frame.
 void graph_reset_history(graph *g);
 

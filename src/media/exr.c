@@ -116,7 +116,8 @@ static exr_result_t write_chunk(exr_context_t context, const exr_image *image, c
     return r;
 }
 
-static exr_result_t write_all(exr_context_t context, const exr_image *image, const plane *planes) {
+static exr_result_t write_all(exr_context_t context, const exr_image *image, const plane *planes,
+                              const char *recipe) {
     int part;
     exr_result_t r = exr_add_part(context, NULL, EXR_STORAGE_SCANLINE, &part);
     if (r == EXR_ERR_SUCCESS)
@@ -125,6 +126,8 @@ static exr_result_t write_all(exr_context_t context, const exr_image *image, con
     for (size_t c = 0; r == EXR_ERR_SUCCESS && c < image->channel_count; c++)
         r = exr_add_channel(context, part, planes[c].name, planes[c].type,
                             EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
+    if (r == EXR_ERR_SUCCESS && recipe)
+        r = exr_attr_set_string(context, part, "roil:recipe", recipe);
     if (r == EXR_ERR_SUCCESS) r = exr_write_header(context);
     int32_t lines = 1;
     if (r == EXR_ERR_SUCCESS) r = exr_get_scanlines_per_chunk(context, part, &lines);
@@ -135,7 +138,7 @@ static exr_result_t write_all(exr_context_t context, const exr_image *image, con
     return r;
 }
 
-bool exr_write(const char *path, const exr_image *image) {
+bool exr_write_with(const char *path, const exr_image *image, const char *recipe) {
     assert(image->channel_count > 0);
     if (image->width == 0 || image->height == 0 || image->width > SIDE_MAX ||
         image->height > SIDE_MAX)
@@ -150,13 +153,17 @@ bool exr_write(const char *path, const exr_image *image) {
     exr_context_t context;
     bool done = exr_start_write(&context, path, EXR_WRITE_FILE_DIRECTLY, &init) == EXR_ERR_SUCCESS;
     if (done) {
-        done = write_all(context, image, planes) == EXR_ERR_SUCCESS;
+        done = write_all(context, image, planes, recipe) == EXR_ERR_SUCCESS;
         done = exr_finish(&context) == EXR_ERR_SUCCESS && done;
     }
     done = done ? file_write(path, s.bytes, s.size) : fault(path, "cannot be encoded", &s);
     mem_free(s.bytes);
     arena_free(&memory);
     return done;
+}
+
+bool exr_write(const char *path, const exr_image *image) {
+    return exr_write_with(path, image, NULL);
 }
 
 typedef struct reader {

@@ -17,7 +17,9 @@ typedef struct exr_image {
     size_t channel_count;
 } exr_image;
 
-bool exr_write(const char *path, const exr_image *image); // atomic
+// Writes a file, atomically. `recipe`: its attribute "roil:recipe"; NULL: none.
+bool exr_write_with(const char *path, const exr_image *image, const char *recipe);
+bool exr_write(const char *path, const exr_image *image); // without one
 
 typedef struct exr_wish { // what to read of a file
     const char *letters;  // names of channels, each a letter, at most 7: "RGB"; NULL: all channels

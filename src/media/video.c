@@ -187,6 +187,10 @@ static bool close_file(video *v) {
     return file_draft_end(&v->draft);
 }
 
+void video_set_comment(video *v, const char *text) {
+    av.av_dict_set(&v->format->metadata, "comment", text, 0);
+}
+
 bool video_finish(video *v) {
     bool done = v->frames > 0 || err_set("%s: a video needs at least one frame", v->path);
     done = done && video_encode(v, NULL) && close_file(v);

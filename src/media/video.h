@@ -9,5 +9,6 @@ typedef struct video video;
 // when it is finished. NULL with a message.
 video *video_create(const char *path, uint32_t width, uint32_t height, double fps);
 bool video_add(video *v, const uint8_t *rgba); // width * height * 4 bytes, sRGB; ignores alpha
-bool video_finish(video *v);                   // completes the file and frees `v`
-void video_abandon(video *v);                  // frees `v` and leaves no file; NULL is allowed
+void video_set_comment(video *v, const char *text);
+bool video_finish(video *v);  // completes the file and frees `v`
+void video_abandon(video *v); // frees `v` and leaves no file; NULL is allowed

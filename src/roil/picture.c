@@ -206,7 +206,8 @@ typedef struct picture { // all that its file needs, away from the effect and it
     roil_save_options options;
     raw_image color, depth;
     arena memory;
-    png_text texts[RECIPE_TEXTS];
+    png_text texts[RECIPE_TEXTS + 1]; // the last holds `recipe`
+    char *recipe;                     // NULL: none
 } picture;
 
 static bool write_png(const picture *p, const linear_image *image) {
@@ -226,7 +227,7 @@ static bool write_png(const picture *p, const linear_image *image) {
                                        .channels = (int)channels,
                                        .bits = sixteen ? 16 : 8,
                                        .pixels = encoded},
-                          p->texts, RECIPE_TEXTS);
+                          p->texts, RECIPE_TEXTS + (p->recipe ? 1 : 0));
     mem_free(encoded);
     return done;
 }
@@ -258,8 +259,10 @@ static bool write_exr(const picture *p, const linear_image *image) {
         {"A", planes + 3 * count, half},
         {"Z", depth, false}, // half has too few digits
     };
-    bool done = exr_write(p->file, &(exr_image){p->color.width, p->color.height, channels,
-                                                COUNT_OF(channels) - (depth ? 0 : 1)});
+    bool done = exr_write_with(p->file,
+                               &(exr_image){p->color.width, p->color.height, channels,
+                                            COUNT_OF(channels) - (depth ? 0 : 1)},
+                               p->recipe);
     mem_free(planes);
     mem_free(depth);
     return done;
@@ -278,8 +281,20 @@ static void free_picture(void *user) {
     picture *p = user;
     free_raw(&p->color);
     free_raw(&p->depth);
+    mem_free(p->recipe);
     arena_free(&p->memory);
     mem_free(p);
+}
+
+// Adds the options of `roil render` that a picture depends on and its saving does not say.
+static size_t describe_drawing(const roil_effect *e, uint32_t before, const char **options,
+                               char reference[32], char warmup[32]) {
+    size_t count = 0;
+    snprintf(reference, 32, "--reference=%u", e->owner->reference);
+    snprintf(warmup, 32, "--warmup=%u", before);
+    if (e->owner->reference) options[count++] = reference;
+    if (before) options[count++] = warmup;
+    return count;
 }
 
 // Reads the depth of the scene for the effect's own picture, if it has the same size.
@@ -290,6 +305,26 @@ static bool take_depth(roil_effect *e, picture *p) {
     if (p->depth.width == p->color.width && p->depth.height == p->color.height) return true;
     free_raw(&p->depth);
     return true;
+}
+
+static char *describe_picture(roil_effect *e, const roil_save_options *o) {
+    char dump[128], reference[32], warmup[32];
+    const char *options[9];
+    size_t count = 0;
+    if (o->alpha) options[count++] = "--alpha";
+    if (o->premultiplied) options[count++] = "--premultiplied";
+    if (o->sixteen) options[count++] = "--16";
+    if (o->full) options[count++] = "--float";
+    if (o->shown) options[count++] = "--shown";
+    if (o->image && snprintf(dump, sizeof dump, "--dump-pass=%s", o->image) < (int)sizeof dump)
+        options[count++] = dump;
+    count +=
+        describe_drawing(e, effect_frames_before(e->effect), options + count, reference, warmup);
+    options[count] = NULL;
+    return roil_describe(
+        e,
+        &(roil_making){
+            .kind = "picture", .first = e->shown, .last = e->shown, .step = 1, .options = options});
 }
 
 static picture *take_picture(roil_effect *e, const char *file, const roil_save_options *options) {
@@ -312,7 +347,9 @@ static picture *take_picture(roil_effect *e, const char *file, const roil_save_o
         free_picture(p);
         return NULL;
     }
+    p->recipe = describe_picture(e, &p->options);
     if (!exr) recipe_write(e->effect, e->shown, e->width, e->height, &p->memory, p->texts);
+    p->texts[RECIPE_TEXTS] = (png_text){"roil:recipe", p->recipe};
     return p;
 }
 
@@ -364,6 +401,9 @@ struct roil_video {
     video *video;
     jobs *frames; // encoded one after the other
     uint8_t *pixels;
+    double fps, first, second, last; // frames
+    size_t count;
+    uint32_t before; // frames that were drawn before the first
 };
 
 typedef struct video_frame {
@@ -385,7 +425,8 @@ roil_video *roil_video_create(roil_effect *e, const char *file, double fps) {
     *v = (roil_video){.effect = e,
                       .video = out,
                       .frames = jobs_create(1, 1 + QUEUED),
-                      .pixels = mem_alloc((size_t)e->width * e->height * 4)};
+                      .pixels = mem_alloc((size_t)e->width * e->height * 4),
+                      .fps = fps};
     if (v->frames) return v;
     video_abandon(out);
     video_free(v);
@@ -410,15 +451,38 @@ bool roil_video_add(roil_video *v) {
     video_frame frame = {.of = v};
     bool read = read_output(v->effect, &frame.raw) ||
                 (jobs_wait(v->frames) && read_output(v->effect, &frame.raw)); // as roil_writer_save
+    v->last = v->effect->shown;
+    if (v->count == 0) v->first = v->last;
+    if (v->count == 0) v->before = effect_frames_before(v->effect->effect);
+    if (v->count == 1) v->second = v->last;
+    v->count++;
     return read && jobs_add(v->frames, encode_frame, free_frame, mem_copy(&frame, sizeof frame));
+}
+
+// Returns the recipe of a film whose frames are evenly spaced; else NULL.
+static char *describe_film(const roil_video *v) {
+    const double step = v->count > 1 ? v->second - v->first : 1;
+    if (!v->count || v->last != v->first + step * (double)(v->count - 1)) return NULL;
+    char fps[48], reference[32], warmup[32];
+    const char *options[4] = {fps};
+    snprintf(fps, sizeof fps, "--fps=%.17g", v->fps);
+    size_t count = 1 + describe_drawing(v->effect, v->before, options + 1, reference, warmup);
+    options[count] = NULL;
+    return roil_describe(
+        v->effect,
+        &(roil_making){
+            .kind = "film", .first = v->first, .last = v->last, .step = step, .options = options});
 }
 
 bool roil_video_finish(roil_video *v) {
     bool done = jobs_finish(v->frames);
+    char *line = describe_film(v);
+    if (line) video_set_comment(v->video, line);
     if (done)
         done = video_finish(v->video);
     else
         video_abandon(v->video);
+    mem_free(line);
     video_free(v);
     return done;
 }

@@ -33,6 +33,7 @@ struct roil_effect {
     size_t kept_count, kept_capacity;
     template_file **templates; // that were read so far
     size_t template_count, template_capacity;
+    char inputs[33]; // hash of all files that it reads; "": not asked for yet
 };
 
 // Appends the value of a control as Lua. `whole`: of palettes and curves also what no setting can
@@ -62,6 +63,18 @@ typedef struct roil_assets {
 bool roil_take_assets(roil *r, const roil_desc *desc);
 // False with a message: the file "roil.json" is wrong. arena_free(&out->memory) in either case.
 bool roil_find_assets(const roil *r, const char *file, roil_assets *out);
+
+typedef struct roil_making {    // of an output, besides the effect, its settings and its size
+    const char *kind;           // "picture", "film", "volume"
+    double first, last, step;   // frames; of volumes those that the box was chosen by
+    const char *const *options; // of the command that makes it, ending with NULL
+} roil_making;
+// Returns the recipe of an output that shows the last frame, or ends with it, as a line of JSON
+// that begins with ROIL_RECIPE_BEGIN: every format holds it as it is. NULL: a text of it is no
+// UTF-8. Free it with mem_free.
+char *roil_describe(roil_effect *e, const roil_making *how);
+roil_made *roil_parse_made(const char *line, const char *name); // `name` is for messages
+#define ROIL_RECIPE_BEGIN "{\"roil-recipe\":1,"
 
 time_limit roil_time_limit(const roil *r); // a new limit for a load
 // What an effect is created with, by the options of `r`; the other members are zero.

@@ -15,11 +15,14 @@ struct roil_volume {
     roil_effect *owner;
     effect_volume content;
     float tolerance;
+    double first, last;     // frames
+    const char *options[9]; // that `roil export vdb` takes for the same
+    arena memory;
     jobs *files;
 };
 
 typedef struct volume_file { // all that it needs, away from the effect and its device
-    char path[PATH_CAP], effect[256];
+    char path[PATH_CAP], effect[256], *recipe;
     vdb_write_grid grids[EFFECT_VOLUME_FIELDS];
     budget_part *parts[EFFECT_VOLUME_FIELDS];
     uint16_t *halves[EFFECT_VOLUME_FIELDS];
@@ -32,10 +35,37 @@ static box3 box_of(const float box[2][3]) {
     return (box3){{box[0][0], box[0][1], box[0][2]}, {box[1][0], box[1][1], box[1][2]}};
 }
 
+static void volume_free(roil_volume *v) {
+    arena_free(&v->memory);
+    mem_free(v);
+}
+
+static void note_options(roil_volume *v, const roil_volume_desc *d) {
+    size_t count = 0;
+    const float(*box)[3] = d->box;
+    const char *const given[] = {
+        d->source ? arena_format(&v->memory, "--source=%s", d->source) : NULL,
+        d->fields ? arena_format(&v->memory, "--fields=%s", d->fields) : NULL,
+        d->size ? arena_format(&v->memory, "--size=%u", d->size) : NULL,
+        memcmp(box[0], box[1], sizeof *box) != 0
+            ? arena_format(&v->memory, "--box=%.9g,%.9g,%.9g,%.9g,%.9g,%.9g", (double)box[0][0],
+                           (double)box[0][1], (double)box[0][2], (double)box[1][0],
+                           (double)box[1][1], (double)box[1][2])
+            : NULL,
+        d->tolerance > 0 ? arena_format(&v->memory, "--tolerance=%.9g", (double)d->tolerance)
+                         : NULL,
+    };
+    for (size_t i = 0; i < COUNT_OF(given); i++)
+        if (given[i]) v->options[count++] = given[i];
+}
+
 roil_volume *roil_volume_create(roil_effect *e, const roil_volume_desc *desc) {
     roil_volume *v = mem_alloc(sizeof *v);
     v->owner = e;
     v->tolerance = desc->tolerance;
+    v->first = desc->first;
+    v->last = desc->last;
+    note_options(v, desc);
     const effect_volume_desc wanted = {.source = desc->source,
                                        .fields = desc->fields,
                                        .size = desc->size,
@@ -47,13 +77,13 @@ roil_volume *roil_volume_create(roil_effect *e, const roil_volume_desc *desc) {
         done =
             roil_keep(e, graph_get_desc(effect_graph(e->effect), v->content.fields[i].image)->name);
     if (!done) {
-        mem_free(v);
+        volume_free(v);
         return NULL;
     }
     if (desc->alone) effect_skip_pictures(e->effect);
     v->files = jobs_create(1, WAITING);
     if (v->files) return v;
-    mem_free(v);
+    volume_free(v);
     return NULL;
 }
 
@@ -75,10 +105,11 @@ static bool write_file(void *user) {
     const vdb_entry metadata[] = {
         {.key = "effect", .text = f->effect}, {.key = "up", .text = "z"},
         {.key = "frame", .number = f->frame}, {.key = "time", .number = f->time},
-        {.key = "fps", .number = f->fps},
+        {.key = "fps", .number = f->fps},     {.key = "roil:recipe", .text = f->recipe},
     };
     return file_make_parent_folders(f->path) &&
-           vdb_write_with(f->path, f->grids, f->count, metadata, COUNT_OF(metadata));
+           vdb_write_with(f->path, f->grids, f->count, metadata,
+                          COUNT_OF(metadata) - (f->recipe ? 0 : 1));
 }
 
 static void free_file(void *user) {
@@ -87,6 +118,7 @@ static void free_file(void *user) {
         mem_free(f->halves[i]);
         budget_give(f->parts[i]);
     }
+    mem_free(f->recipe);
     mem_free(f);
 }
 
@@ -132,6 +164,11 @@ bool roil_volume_save(roil_volume *v, const char *file) {
     f->frame = e->shown;
     f->time = (e->shown - effect_first_frame(e->effect)) / f->fps;
     str_copy(f->effect, sizeof f->effect, effect_name(e->effect));
+    f->recipe = roil_describe(e, &(roil_making){.kind = "volume",
+                                                .first = v->first,
+                                                .last = v->last,
+                                                .step = 1,
+                                                .options = v->options});
     bool done = str_copy(f->path, sizeof f->path, file) || path_too_long(file);
     for (size_t i = 0; done && i < v->content.count; i++) done = read_field(v, i, f);
     if (done) return jobs_add(v->files, write_file, free_file, f);
@@ -142,6 +179,6 @@ bool roil_volume_save(roil_volume *v, const char *file) {
 bool roil_volume_finish(roil_volume *v) {
     if (!v) return true;
     bool done = jobs_finish(v->files);
-    mem_free(v);
+    volume_free(v);
     return done;
 }

@@ -40,7 +40,7 @@ class Usage(Case):
         self.fails(2, ["unknown command 'rendr'", "did you mean 'render'?"], "rendr")
         self.fails(2, ["'puff.lua' is no command; `roil live puff.lua` shows an effect"], "puff.lua")
         self.fails(2, ["unknown command 'bake'",
-                       "accepted: render, live, new, check, info, export, bench, tune, compare"], "bake")
+                       "accepted: render, live, new, check, info, export, bench, tune, repro, compare"], "bake")
 
     def test_unknown_option_is_named(self):
         self.fails(2, "--sise", "render", "puff.lua", "--sise", "96x54")
@@ -60,7 +60,7 @@ class Usage(Case):
         self.fails(2, "did you mean '--fields'?", "export", "vdb", "--field", "density")
         self.fails(2, "did you mean '--shard'?", "bench", "--shart", "1/2")
         self.fails(2, "did you mean '--max-error'?", "tune", "--max-eror", "1")
-        self.fails(2, ["unknown option '--quick'", "accepted: --preset, --json, --memory, --time-limit, --help, --usage"], "check",
+        self.fails(2, ["unknown option '--quick'", "accepted: --preset, --json, --assets, --memory, --time-limit, --help, --usage"], "check",
                    "--quick", "puff.lua")
         self.fails(2, ["unknown option '-x'", "accepted: --output, "], "compare", "-x")
 
