@@ -214,6 +214,8 @@ typedef struct roil_simulation {
 bool roil_get_simulation(const roil_effect *e, roil_simulation *out); // false: nothing simulates
 void roil_restart(roil_effect *e); // simulations start from the beginning with the next frame
 
+// From now on roil_render brings simulations to a frame and draws no picture: for checkpoints.
+void roil_only_simulate(roil_effect *e);
 // Writes the state of all simulations after the last frame to a file. On failure there is no file,
 // or the previous one.
 bool roil_checkpoint(roil_effect *e, const char *file);
@@ -293,6 +295,9 @@ roil_writer *roil_writer_create(void);
 bool roil_writer_save(roil_writer *w, roil_effect *e, const char *file,
                       const roil_save_options *options);
 bool roil_writer_finish(roil_writer *w); // waits for all files and frees `w`; NULL is allowed
+
+// Returns whether a .png or .exr file can be read to its end. False with a message.
+bool roil_is_whole(const char *file);
 
 typedef struct roil_recipe { // how a picture was made
     // The effect's file as it was given. NULL: it lies outside of the current folder; a picture

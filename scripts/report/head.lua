@@ -63,7 +63,9 @@ local function facts(sweep)
   end
   local frames = same(sweep, frames_of)
   local warmup, repeats = same(sweep, function(row) return row.warmup end), same(sweep, function(row) return row.repeats end)
-  add("Device", sweep.device)
+  local others = 0
+  for _, row in ipairs(sweep.rows) do others = others + (row.device and 1 or 0) end
+  add("Device", sweep.device .. (others > 0 and "; " .. number.of(others, "row") .. " on others, marked below" or ""))
   add("Driver", sweep.driver)
   add("Machine", machine_of(sweep))
   add("Program", "roil " .. sweep.roil .. (sweep.commit ~= "" and ", commit " .. sweep.commit or ""))

@@ -48,6 +48,7 @@ local function columns(sweep)
     add(name, function(row) return figure(row.counters[name], number.count) end, "n")
   end
   add("memory", function(row) return memory(row.memory) end, "n")
+  add("device", function(row) return row.device and h.td { row.device } end)
   for _, kind in ipairs { { "psnr", "PSNR, dB" }, { "ssim", "SSIM" }, { "flip", "FLIP" } } do
     add(kind[2], function(row) return figure(row.error[kind[1]]) end, "n")
   end

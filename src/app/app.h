@@ -90,6 +90,17 @@ char *app_quoted(arena *memory, const char *text);
 
 bool app_parse_samples(const char *text, uint32_t *out); // samples per pixel, 1 to 65536
 
+// ---- parts of the work, for machines that share it --------------------------------------------
+
+bool app_parse_shard(const char *text, unsigned *shard, unsigned *shards); // "2/4": from 1
+// Keeps a part of the frames: a run of neighbours, so that what simulates goes on within it.
+void app_cut_frames(app_frames *frames, unsigned shard, unsigned shards);
+// Removes the frames for which `there` returns true.
+void app_skip_frames(app_frames *frames, bool (*there)(void *user, double frame), void *user);
+// Continues from the file of the pattern that has the highest number up to `most`, and can be read.
+// False: there is none, and all begins anew. `*frame`: rendered last before it was saved.
+bool app_restore_last(roil_effect *e, const char *pattern, double most, double *frame);
+
 // ---- interrupts -------------------------------------------------------------------------------
 
 // From now on the first Ctrl-C is only noted; a second one ends the program.

@@ -33,14 +33,6 @@ typedef struct bench_options {
 
 // ---- options ------------------------------------------------------------------------------------
 
-static bool parse_shard(const char *text, bench_choice *c) {
-    char rest;
-    if (sscanf(text, "%4u/%4u%c", &c->shard, &c->shards, &rest) == 2 && c->shard >= 1 &&
-        c->shard <= c->shards)
-        return true;
-    return err_set("--shard '%s'; accepted: 2/4, the second of four parts", text);
-}
-
 static bool add_only(bench_options *o, char *text) {
     char *equals = strchr(text, '=');
     if (!equals || equals == text)
@@ -60,7 +52,7 @@ static bool take_option(bench_options *o, poptContext context, int option) {
     case OPTION_ONLY:
         return add_only(o, text);
     case OPTION_SHARD:
-        return parse_shard(text, &o->order.choice);
+        return app_parse_shard(text, &o->order.choice.shard, &o->order.choice.shards);
     }
     return true;
 }

@@ -7,6 +7,7 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/str.h"
+#include <math.h>
 #include <popt.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -34,9 +35,13 @@ typedef struct job {
     const char *frames_text;
     uint32_t width, height;
     int alpha, premultiplied, sixteen, full, shown;
-    int warmup;         // frames
-    bool all;           // frames, as nobody says which
-    uint32_t reference; // samples a pixel; 0: as the effect draws it
+    int warmup;             // frames
+    unsigned shard, shards; // 0: all frames
+    int skips, simulates;   // --skip-existing, --simulate-only
+    int checkpoint_every;   // frames; 0: after the last alone
+    size_t left_out;        // frames that were there
+    bool all;               // frames, as nobody says which
+    uint32_t reference;     // samples a pixel; 0: as the effect draws it
     double fps;
     char default_output[PATH_CAP];
 } job;
@@ -51,6 +56,7 @@ enum {
     OPTION_PRESET,
     OPTION_REFERENCE,
     OPTION_EVENT,
+    OPTION_SHARD,
 };
 
 static bool add_output(job *j, const char *pattern, const char *image) {
@@ -76,6 +82,8 @@ static bool take_option(job *j, poptContext context, int option) {
         return app_add_set(&j->settings, text);
     case OPTION_REFERENCE:
         return app_parse_samples(text, &j->reference);
+    case OPTION_SHARD:
+        return app_parse_shard(text, &j->shard, &j->shards);
     case OPTION_PRESET:
         app_add_preset(&j->settings, text);
         return true;
@@ -107,6 +115,26 @@ static const char **join_dump(int *argc, const char **argv, arena *memory) {
     return joined;
 }
 
+// Checks what cuts the work into parts.
+static bool render_check_parts(const job *j) {
+    if (j->checkpoint_every < 0)
+        return err_set("--checkpoint-every %d; accepted: 1 or more frames", j->checkpoint_every);
+    if (j->checkpoint_every && !j->checkpoint)
+        return err_set("--checkpoint-every: where to? --checkpoint state/%%04d.state names it");
+    if (j->simulates && !j->checkpoint)
+        return err_set("--simulate-only leaves nothing without --checkpoint FILE");
+    if (j->simulates && (j->output_count || j->skips || j->reference))
+        return err_set("--simulate-only draws no pictures: leave out -o, --dump-pass, "
+                       "--skip-existing and --reference");
+    for (size_t i = 0; (j->shards || j->skips) && i < j->output_count; i++)
+        if (str_ends_with(j->outputs[i].pattern, ".mp4"))
+            return err_set("output '%s': a film is not drawn in parts; draw pictures, as "
+                           "out/%%04d.png",
+                           j->outputs[i].pattern);
+    return (!j->checkpoint || app_check_pattern(j->checkpoint)) &&
+           (!j->restore || app_check_pattern(j->restore));
+}
+
 static bool render_parse(job *j, int argc, const char **argv, poptContext *context) {
     const struct poptOption options[] = {
         {"output", 'o', POPT_ARG_STRING, NULL, OPTION_OUTPUT,
@@ -130,9 +158,19 @@ static bool render_parse(job *j, int argc, const char **argv, poptContext *conte
          "use the effect, frame, size and settings of this picture where no others are given",
          "SHOT.png"},
         {"restore", '\0', POPT_ARG_STRING, &j->restore, 0,
-         "continue the simulation from this file, by default with the frame after it", "FILE"},
+         "continue the simulation from this file, by default with the frame after it; of a "
+         "pattern, from the last before the frames",
+         "FILE|PATTERN"},
         {"checkpoint", '\0', POPT_ARG_STRING, &j->checkpoint, 0,
-         "write the state of the simulation after the last frame", "FILE"},
+         "write the state of the simulation after the last frame", "FILE|PATTERN"},
+        {"checkpoint-every", '\0', POPT_ARG_INT, &j->checkpoint_every, 0,
+         "write it after each N-th frame of the effect too", "N"},
+        {"simulate-only", '\0', POPT_ARG_NONE, &j->simulates, 0,
+         "draw no pictures: simulate the frames, for --checkpoint", NULL},
+        {"shard", '\0', POPT_ARG_STRING, NULL, OPTION_SHARD,
+         "only the I-th of N equal parts of the frames", "I/N"},
+        {"skip-existing", '\0', POPT_ARG_NONE, &j->skips, 0,
+         "leave out frames whose pictures are there, and whole", NULL},
         {"reference", '\0', POPT_ARG_STRING, NULL, OPTION_REFERENCE,
          "replace each pass march by a path tracer with so many samples per pixel", "SPP"},
         {"stats", '\0', POPT_ARG_STRING, &j->stats, 0,
@@ -169,6 +207,7 @@ static bool render_parse(job *j, int argc, const char **argv, poptContext *conte
     if (j->alpha && j->premultiplied)
         return err_set("--alpha is straight, --premultiplied is not: one of the two");
     if (j->warmup && j->restore) return err_set("--warmup and --restore exclude each other");
+    if (!render_check_parts(j)) return false;
     return app_check_device(&j->device) &&
            (!j->frames_text || app_parse_frames(j->frames_text, &j->frames));
 }
@@ -199,6 +238,20 @@ static bool complete_from(job *j) {
     return true;
 }
 
+static bool name_file(const output *o, double frame, char file[PATH_CAP]) {
+    app_format_pattern(o->pattern, frame, file, PATH_CAP);
+    return !o->ours || app_may_write_here(file);
+}
+
+static bool is_there(void *user, double frame) {
+    const job *j = user;
+    char file[PATH_CAP];
+    for (size_t i = 0; i < j->output_count; i++)
+        if (!name_file(&j->outputs[i], frame, file) || !file_exists(file) || !roil_is_whole(file))
+            return false;
+    return true;
+}
+
 // Takes from the effect what the user does not say: all of its frames, and the default output.
 static bool render_complete(job *j, roil_effect *e) {
     roil_effect_info info = roil_get_info(e);
@@ -208,7 +261,9 @@ static bool render_complete(job *j, roil_effect *e) {
     if (j->all && !app_parse_frames(range, &j->frames)) return false;
     app_warn_of_frames(&j->frames, &info);
     if (!(j->fps > 0)) j->fps = info.fps / j->frames.step;
-    bool picture = false;
+    if (j->shards) app_cut_frames(&j->frames, j->shard, j->shards);
+    if (j->shards) j->all = false;
+    bool picture = j->simulates;
     for (size_t i = 0; i < j->output_count; i++) picture = picture || !j->outputs[i].image;
     if (!picture) {
         const char *name = path_name(j->file);
@@ -225,13 +280,34 @@ static bool render_complete(job *j, roil_effect *e) {
                            "out/%%04d.png",
                            o->pattern, j->frames.count);
     }
+    size_t before = j->frames.count;
+    if (j->skips) app_skip_frames(&j->frames, is_there, j);
+    j->left_out = before - j->frames.count;
     return true;
+}
+
+static bool is_simulated(void *user, double frame) {
+    return frame <= *(const double *)user;
+}
+
+// Restores the last checkpoint before the frames; where only their states are wanted, the last of
+// all.
+static void render_restore_last(job *j, roil_effect *e) {
+    double last, most = j->frames.numbers[j->simulates ? j->frames.count - 1 : 0];
+    if (!app_restore_last(e, j->restore, j->simulates ? most : most - 1, &last)) return;
+    size_t before = j->frames.count;
+    if (j->simulates) app_skip_frames(&j->frames, is_simulated, &last);
+    j->left_out += before - j->frames.count;
 }
 
 // Restores the checkpoint, and skips the frames that it already contains.
 static bool render_restore(job *j, roil_effect *e) {
     double last, *numbers = j->frames.numbers;
     size_t left = 0;
+    if (app_has_number(j->restore)) {
+        render_restore_last(j, e);
+        return true;
+    }
     if (!roil_restore(e, j->restore, &last)) return false;
     for (size_t i = 0; j->all && i < j->frames.count; i++)
         if (numbers[i] > last) numbers[left++] = numbers[i];
@@ -241,11 +317,6 @@ static bool render_restore(job *j, roil_effect *e) {
                                         j->restore, last, numbers[0]);
 }
 
-static bool name_file(const output *o, double frame, char file[PATH_CAP]) {
-    app_format_pattern(o->pattern, frame, file, PATH_CAP);
-    return !o->ours || app_may_write_here(file);
-}
-
 static bool open_outputs(job *j, roil_effect *e) {
     for (size_t i = 0; i < j->output_count; i++) {
         output *o = &j->outputs[i];
@@ -253,8 +324,10 @@ static bool open_outputs(job *j, roil_effect *e) {
     }
     if (!roil_prepare(e, j->width, j->height) || (j->restore && !render_restore(j, e)))
         return false;
+    if (j->simulates) roil_only_simulate(e);
     j->writer = roil_writer_create();
     if (!j->writer) return false;
+    if (!j->frames.count) return true;
     for (size_t i = 0; i < j->output_count; i++) {
         output *o = &j->outputs[i];
         bool film = str_ends_with(o->pattern, ".mp4");
@@ -265,8 +338,9 @@ static bool open_outputs(job *j, roil_effect *e) {
         o->video = roil_video_create(e, o->pattern, j->fps);
         if (!o->video) return false;
     }
-    return (!j->checkpoint || app_can_write(j->checkpoint)) &&
-           (!j->stats || app_can_write(j->stats));
+    char state[PATH_CAP];
+    if (j->checkpoint) app_format_pattern(j->checkpoint, j->frames.numbers[0], state, PATH_CAP);
+    return (!j->checkpoint || app_can_write(state)) && (!j->stats || app_can_write(j->stats));
 }
 
 static bool save_frame(job *j, roil_effect *e, double frame) {
@@ -313,6 +387,18 @@ static bool render_frame(const job *j, roil_effect *e, size_t index, app_progres
     return done;
 }
 
+// Keeps the state after each N-th frame of the effect, whichever was drawn first, and after the
+// last.
+static bool keep_state(const job *j, roil_effect *e, size_t index) {
+    double frame = j->frames.numbers[index], number = frame - roil_get_info(e).first_frame + 1;
+    bool last = index + 1 == j->frames.count;
+    bool each = j->checkpoint_every && fmod(number, j->checkpoint_every) == 0;
+    char file[PATH_CAP];
+    if (!j->checkpoint || (!last && !each)) return true;
+    app_format_pattern(j->checkpoint, frame, file, sizeof file);
+    return file_make_parent_folders(file) && roil_checkpoint(e, file);
+}
+
 static bool render_frames(job *j, roil_effect *e, app_stats *stats) {
     app_progress progress, steps = {0};
     roil_on_progress(e, app_tell_steps, &steps);
@@ -325,7 +411,8 @@ static bool render_frames(job *j, roil_effect *e, app_stats *stats) {
             done = err_set("stopped after %zu of %zu frames", i, j->frames.count);
         if (!done) break;
         double frame = j->frames.numbers[i], start = clock_seconds();
-        done = warm_up(j, e, i) && render_frame(j, e, i, &progress) && save_frame(j, e, frame);
+        done = warm_up(j, e, i) && render_frame(j, e, i, &progress) && save_frame(j, e, frame) &&
+               keep_state(j, e, i);
         if (!done) break;
         app_stats_add(stats, e, frame, clock_seconds() - start);
         app_progress_step(&progress, (i + 1) * each);
@@ -370,17 +457,18 @@ static int render_run(job *j) {
         status = app_fail_input();
     } else if (!render_complete(j, e)) {
         status = app_fail(APP_BAD_USAGE, "render: %s", roil_error());
-    } else {
-        bool done = open_outputs(j, e) && render_frames(j, e, stats) &&
-                    (!j->checkpoint || roil_checkpoint(e, j->checkpoint));
+    } else if (j->frames.count) {
+        bool done = open_outputs(j, e) && render_frames(j, e, stats);
         if (!done) status = app_fail_input(); // before closing changes the message
         if (!close_outputs(j, done) && done) status = app_fail_input();
     }
     if (status == APP_DONE) {
         printf("%s on %s\n", j->file, roil_device_name(r));
         app_stats_print(stats);
-        for (size_t i = 0; i < j->output_count; i++) printf("wrote %s\n", j->outputs[i].pattern);
-        if (j->checkpoint) printf("wrote %s\n", j->checkpoint);
+        if (j->left_out) printf("%zu frames were there\n", j->left_out);
+        for (size_t i = 0; j->frames.count && i < j->output_count; i++)
+            printf("wrote %s\n", j->outputs[i].pattern);
+        if (j->checkpoint && j->frames.count) printf("wrote %s\n", j->checkpoint);
         if (j->stats && !app_stats_save(stats, j->stats, r, j->file, j->width, j->height,
                                         j->settings.all, j->settings.count))
             status = app_fail_input();

@@ -137,7 +137,7 @@ static void add_headings(const bench_results *r, const columns *c, strbuf *out) 
     for (size_t n = 0; n < COUNT_OF(number_columns); n++)
         for (size_t i = 0; i < c->numbers[n].count; i++)
             add_heading(out, number_columns[n].prefix, c->numbers[n].items[i], "");
-    strbuf_add(out, "\n");
+    strbuf_add(out, ",device\n");
 }
 
 static void add_times(const columns *c, const bench_row *row, strbuf *out) {
@@ -191,6 +191,7 @@ static void add_row(const bench_results *r, const columns *c, const bench_row *r
         strbuf_add(out, ",,,");
     }
     add_numbers(c, row, out);
+    add_text(out, row->device ? row->device : "");
     strbuf_add(out, "\n");
 }
 

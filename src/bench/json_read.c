@@ -229,7 +229,8 @@ static bool read_row(const reader *r, const json_t *from, bench_row *row) {
            get_times(r, from, "times_ms", &row->times) &&
            get_named(r, from, "counters", &row->counters) &&
            get_named(r, from, "published", &row->published) && get_memory(r, from, row) &&
-           get_error(r, from, row) && get_thumbnail(r, from, row);
+           get_error(r, from, row) && get_text(r, from, "device", &row->device) &&
+           get_thumbnail(r, from, row);
 }
 
 static bool read_rows(reader *r, const json_t *root, bench_results *out) {

@@ -107,6 +107,7 @@ static json_t *row_json(const bench_row *row) {
         json_object_set_new(all, "error",
                             json_pack("{s:o, s:o, s:o}", "psnr", number(row->psnr), "ssim",
                                       number(row->ssim), "flip", number(row->flip)));
+    if (row->device && row->device[0]) json_object_set_new(all, "device", text(row->device));
     if (row->thumbnail) json_object_set_new(all, "thumbnail", text(row->thumbnail));
     json_object_set_new(all, "published", numbers_json(&row->published));
     return all;

@@ -25,17 +25,22 @@ static bool is_same(const bench_results *a, const bench_results *b, const char *
         return err_set("%s: is of another sweep ('%s', the first is '%s'), or of other options or "
                        "effects",
                        folder, b->sweep, a->sweep);
-    if (strcmp(a->device, b->device) != 0 || strcmp(a->driver, b->driver) != 0)
-        return err_set("%s: was measured on %s (%s), the first on %s (%s)", folder, b->device,
-                       b->driver, a->device, a->driver);
     return strcmp(a->commit, b->commit) == 0 ||
            err_set("%s: was measured at commit %s, the first at %s", folder, b->commit, a->commit);
 }
 
-static bool add_part(bench_results *all, const bench_results *part, const char *from,
-                     const char *to) {
+// Returns what rows of a part are marked with: times of different devices cannot be compared, but
+// pictures and errors can.
+static const char *mark_of(const bench_results *all, const bench_results *part, arena *memory) {
+    bool same = strcmp(all->device, part->device) == 0 && strcmp(all->driver, part->driver) == 0;
+    return same ? NULL : arena_format(memory, "%s (%s)", part->device, part->driver);
+}
+
+static bool add_part(bench_results *all, bench_results *part, const char *from, const char *to) {
+    const char *mark = mark_of(all, part, &part->memory);
     for (size_t i = 0; i < part->row_count; i++) {
-        const bench_row *row = &part->rows[i];
+        bench_row *row = &part->rows[i];
+        if (mark && !(row->device && row->device[0])) row->device = mark;
         if (bench_find(all, row->index))
             return err_set("%s: row %zu (%s) was measured by another part, too", from, row->index,
                            row->label);

@@ -75,6 +75,10 @@ typedef struct bench_row {
     bool compared;           // the three below are valid, for the worst frame
     double psnr, ssim, flip; // psnr INFINITY: equal
     const char *thumbnail;   // PNG, relative to the folder of the results; NULL: none
+    // "NAME (DRIVER)" of the device that measured it, where others measured most of the rows; NULL
+    // or
+    // "": that of the results.
+    const char *device;
     bench_numbers published; // times that others report for this row, milliseconds
 } bench_row;
 

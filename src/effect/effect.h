@@ -298,6 +298,8 @@ bool effect_rehearse(effect *e, double frame);
 // continue; decoded grids; meshes. `from` can then only be destroyed. On failure `from` is
 // unchanged.
 bool effect_adopt(effect *e, effect *from, uint32_t width, uint32_t height);
+// From now on frames bring what simulates to their time, and draw nothing that it does not need.
+void effect_only_simulate(effect *e);
 // How many frames were drawn in a row before the last, if pictures depend on that.
 uint32_t effect_frames_before(const effect *e);
 size_t effect_files(const effect *e, const char *const **out); // absolute paths of all files read

@@ -159,6 +159,7 @@ struct effect {
     bool (*progress)(void *user, double done, double whole); // effect_on_progress
     void *progress_user;
     shared_mat4 clip, last_clip; // world to clip of the frame being recorded, of the one before
+    bool only_simulates;         // effect_only_simulate
     uint32_t in_a_row;           // frames before the last one that histories tell of
     bool has_last;               // there is one before, of which histories tell
     bool compiled, allocated;

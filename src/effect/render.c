@@ -287,7 +287,8 @@ uint64_t effect_render(effect *e, double frame, bool jump) {
     e->host.fresh = !e->has_last;
     bool done = effect_evaluate(e, frame, e->device, again) &&
                 scene_bvh_update(e->host.bvh, e->device, &e->context) &&
-                graph_execute(e->graph, e->device);
+                (e->only_simulates ? graph_execute_simulation(e->graph, e->device)
+                                   : graph_execute(e->graph, e->device));
     if (!gpu_frame_end(e->device)) done = false;
     if (!done) { // what it may have left in a history is of no frame
         forget(e);
@@ -301,6 +302,10 @@ uint64_t effect_render(effect *e, double frame, bool jump) {
     e->rendered_at = clock_seconds();
     if (e->never_waits) effect_keep_snapshot(e);
     return number;
+}
+
+void effect_only_simulate(effect *e) {
+    e->only_simulates = true;
 }
 
 uint32_t effect_frames_before(const effect *e) {

@@ -361,6 +361,16 @@ bool roil_save(roil_effect *e, const char *file, const roil_save_options *option
     return done;
 }
 
+bool roil_is_whole(const char *file) {
+    arena memory = {0};
+    png_image png;
+    exr_image exr;
+    bool done = strcmp(path_extension(file), "exr") == 0 ? exr_read(file, NULL, &memory, &exr)
+                                                         : png_read(file, NULL, &memory, &png);
+    arena_free(&memory);
+    return done;
+}
+
 // ---- files beside the frames ------------------------------------------------------------------
 
 enum { MAX_THREADS = 16, QUEUED = 2 }; // of a writer; pictures that wait besides those at work

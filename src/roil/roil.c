@@ -428,6 +428,10 @@ size_t roil_readouts(roil_effect *e, roil_readout *out, size_t capacity) {
     return count;
 }
 
+void roil_only_simulate(roil_effect *e) {
+    effect_only_simulate(e->effect);
+}
+
 bool roil_get_playback(const roil_effect *e, roil_playback *out) {
     field_playback all;
     bool any = effect_playback(e->effect, &all);

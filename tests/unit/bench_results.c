@@ -91,7 +91,7 @@ static void a_table_has_a_column_for_whatever_a_row_has(void **state) {
     const char *text = data;
     assert_non_null(strstr(text, ",axis.steps,"));
     assert_non_null(strstr(text, ",gpu.march.p95,"));
-    assert_non_null(strstr(text, ",published.a card\n"));
+    assert_non_null(strstr(text, ",published.a card,device\n"));
     assert_non_null(strstr(text, "\"steps 16, \"\"quoted\"\"\""));
     int line = 0;
     bool quoted = false;
@@ -177,16 +177,35 @@ static void parts_become_one(void **state) {
     assert_true(file_exists(path));
 }
 
+static void parts_of_another_device_are_marked(void **state) {
+    (void)state;
+    char path[PATH_CAP];
+    bench_results r;
+    write_part("a", 1, "same", "d");
+    write_part("c", 2, "same", "e");
+    if (!merge("a", "c")) fail_msg("%s", err_get());
+    helper_path(path, "merged");
+    assert_true(bench_read(path, &r));
+    assert_string_equal(r.device, "d");
+    assert_true(!r.rows[0].device || !r.rows[0].device[0]);
+    assert_int_equal(strncmp(r.rows[1].device, "e (", 3), 0);
+    bench_results_free(&r);
+    write_part("b", 3, "same", "d"); // the mark stays in what is merged again
+    if (!merge("b", "merged")) fail_msg("%s", err_get());
+    assert_true(bench_read(path, &r));
+    assert_int_equal(r.row_count, 3);
+    assert_int_equal(strncmp(r.rows[1].device, "e (", 3), 0);
+    assert_true(!r.rows[2].device || !r.rows[2].device[0]);
+    bench_results_free(&r);
+}
+
 static void parts_of_something_else_are_refused(void **state) {
     (void)state;
     write_part("a", 1, "same", "d");
     write_part("b", 2, "other", "d");
-    write_part("c", 2, "same", "e");
     write_part("d", 1, "same", "d");
     assert_false(merge("a", "b"));
     assert_non_null(strstr(err_get(), "is of another sweep"));
-    assert_false(merge("a", "c"));
-    assert_non_null(strstr(err_get(), "was measured on e"));
     assert_false(merge("a", "d"));
     assert_non_null(strstr(err_get(), "measured by another part, too"));
     assert_false(merge("a", "none"));
@@ -253,6 +272,7 @@ int main(void) {
         cmocka_unit_test(a_table_has_a_column_for_whatever_a_row_has),
         cmocka_unit_test(a_row_that_is_measured_again_is_replaced),
         cmocka_unit_test(parts_become_one),
+        cmocka_unit_test(parts_of_another_device_are_marked),
         cmocka_unit_test(parts_of_something_else_are_refused),
         cmocka_unit_test(what_is_no_result_is_refused),
         cmocka_unit_test(texts_lose_control_characters),
