@@ -29,7 +29,8 @@ class New(Case):
         for name in shipped():
             with self.subTest(name):
                 self.succeeds("new", "made-" + name, "--from", name)
-                self.succeeds("check", f"made-{name}/made-{name}.lua")
+        made = [f"made-{name}/made-{name}.lua" for name in shipped()]
+        self.assertEqual(self.succeeds("check", *made).count(": good\n"), len(made))
 
     def test_a_choice_brings_its_files(self):
         self.write("a/pick.lua", """

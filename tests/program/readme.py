@@ -3,6 +3,7 @@ them names exist."""
 import os
 import re
 import shutil
+import subprocess
 
 from lib.program import SMALL, SOURCE, Case, main
 
@@ -36,6 +37,8 @@ class Readme(Case):
         options = set(re.findall(r"(?<![\w-])--[a-z][a-z-]*", text_of("README.md")))
         offered = "".join(self.succeeds(*c.split(), "--help") for c in (
             "render", "live", "new", "check", "info", "export raw", "export vdb", "compare", "repro", "bench", "tune")) + "--help"
+        offered += subprocess.run([os.path.join(SOURCE, "scripts/farm"), "--help"], stdout=subprocess.PIPE, text=True,
+                                  check=True).stdout
         for option in options:
             self.assertIn(option, offered)
 
