@@ -23,12 +23,6 @@ static void make_fresh(slot_list *slots) {
         if (slots->at[i].paired) slots->at[i].fresh = true;
 }
 
-bool graph_has_history(const graph *g) {
-    for (size_t i = 0; i < g->image_count; i++)
-        if (g->images[i].history_used) return true;
-    return false;
-}
-
 void graph_reset_history(graph *g) {
     make_fresh(&g->slots);
     make_fresh(&g->kept);

@@ -81,6 +81,12 @@ graph_image graph_add_image(graph *g, const graph_image_desc *desc) {
     return image_append(g, &copy, NONE);
 }
 
+bool graph_has_history(const graph *g) {
+    for (size_t i = 0; i < g->image_count; i++)
+        if (g->images[i].history_used) return true;
+    return false;
+}
+
 graph_image graph_add_history(graph *g, graph_image image) {
     uint32_t index = index_of(g, image);
     const graph_node_image *node = &g->images[index];

@@ -327,6 +327,19 @@ static feedback feedback_create(const char *extra) {
     return f;
 }
 
+static void a_graph_tells_whether_a_pass_reads_a_history(void **state) {
+    (void)state;
+    feedback f = feedback_create(NULL);
+    assert_true(graph_has_history(f.g));
+    graph_remove_output(f.g, f.out); // then nothing runs that does
+    graph_image other = image(f.g, "other");
+    step(f.g, "fill", NOTHING, USES(other));
+    graph_add_output(f.g, other);
+    compile(f.g);
+    assert_false(graph_has_history(f.g));
+    graph_destroy(f.g, NULL);
+}
+
 static void a_history_is_cleared_once_and_then_swapped(void **state) {
     (void)state;
     feedback f = feedback_create(NULL);
@@ -562,6 +575,7 @@ int main(void) {
         cmocka_unit_test(culled_images_have_no_memory),
         cmocka_unit_test(optional_image_has_memory_while_it_is_read),
         cmocka_unit_test(images_are_created_for_what_passes_do_with_them),
+        cmocka_unit_test(a_graph_tells_whether_a_pass_reads_a_history),
         cmocka_unit_test(a_history_is_cleared_once_and_then_swapped),
         cmocka_unit_test(compiling_again_at_the_same_size_keeps_all_memory),
         cmocka_unit_test(a_resize_clears_histories_and_keeps_fixed_images),

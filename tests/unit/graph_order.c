@@ -106,6 +106,7 @@ static void a_history_that_only_culled_passes_read_keeps_nothing(void **state) {
     graph_add_output(g, seen);
     compile(g);
     assert_order(g, "draw");
+    assert_false(graph_has_history(g));
     assert_null(graph_get_image(g, past));
     graph_destroy(g, NULL);
 }
