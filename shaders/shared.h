@@ -35,10 +35,11 @@ struct frame_block {
     SHARED_MAT4 projection;   // camera to clip; depth 0 near, 1 far
     SHARED_MAT4 view_inverse; // camera to world
     SHARED_MAT4 last;         // world to clip of the frame before; of this one in the first
-    SHARED_VEC4 eye;          // xyz: metres; w: 0
-    SHARED_VEC4 lens;         // tan(half width), tan(half height), near, far (metres)
-    SHARED_VEC4 time;         // seconds, seconds since the last frame, number of the frame shown, 0
-    SHARED_UVEC4 size;        // output width, height, frames drawn so far (for noise), seed
+    SHARED_VEC4 eye;   // xyz: metres; w: by how much an orthographic camera stands behind its
+                       // place (m), 0 in perspective
+    SHARED_VEC4 lens;  // tan(half width), tan(half height), near, far (metres)
+    SHARED_VEC4 time;  // seconds, seconds since the last frame, number of the frame shown, 0
+    SHARED_UVEC4 size; // output width, height, frames drawn so far (for noise), seed
     SHARED_VEC4 sun_direction; // xyz: towards the sun, unit; w: angular radius of the moon that is
                                // seen there, radians
     SHARED_VEC4 sun_radiance;  // rgb: irradiance at normal incidence over pi

@@ -66,14 +66,31 @@ bool scene_camera_eye(const scene_camera *c, const field_context *context, vec3 
     return true;
 }
 
+// An orthographic camera is one that stands far behind its place and sees little to the sides. Its
+// lines of sight are parallel but for half a thousandth, which moves what is as deep as it is high
+// by a quarter of a pixel in a picture of a thousand; and all that draws knows perspective alone.
+// Returns by how much the eye has moved (m).
+static float step_back(float height, vec3 eye, const vec3 target, const vec3 forward, float *fov,
+                       float *near, float *far) {
+    const float heights = 1000; // that it stands away from its target
+    if (!(height > 0)) return 0;
+    float moved = heights * height - glm_vec3_distance(eye, (float *)(uintptr_t)target);
+    glm_vec3_muladds((float *)(uintptr_t)forward, -moved, eye);
+    *fov = 2 * glm_deg(atanf(0.5f / heights));
+    *near += moved;
+    *far += moved;
+    return moved;
+}
+
 static bool fill_camera(const scene_camera *c, const field_context *context, float aspect,
                         struct frame_block *out) {
     vec3 eye, target, forward, up = {0, 0, 1};
-    float fov, near, far;
+    float fov, near, far, height;
     if (!scene_camera_eye(c, context, eye, target) ||
         !scene_evaluate_scalar(c->fov, context, &fov) ||
         !scene_evaluate_scalar(c->near, context, &near) ||
-        !scene_evaluate_scalar(c->far, context, &far))
+        !scene_evaluate_scalar(c->far, context, &far) ||
+        !scene_evaluate_scalar(c->orthographic, context, &height))
         return false;
     fov = clampf(fov, 1, 170);
     near = fmaxf(near, 1e-4f);
@@ -81,15 +98,21 @@ static bool fill_camera(const scene_camera *c, const field_context *context, flo
     glm_vec3_sub(target, eye, forward);
     if (glm_vec3_norm(forward) < 1e-6f) glm_vec3_copy((vec3){0, 1, 0}, forward);
     glm_vec3_normalize(forward);
+    const float moved = step_back(height, eye, target, forward, &fov, &near, &far);
     // Straight up or down has no up of its own; an orbit, which ends at 89.9 degrees, keeps its
     // yaw.
     if (hypotf(forward[0], forward[1]) < 1e-4f) glm_vec3_copy((vec3){0, 1, 0}, up);
 
-    mat4 view, projection, inverse;
-    glm_look(eye, forward, up, view);
+    // The inverse first, since it is the axes as they are; glm_look would lose digits far away.
+    mat4 view, projection, inverse = GLM_MAT4_IDENTITY_INIT;
+    glm_vec3_crossn(forward, up, inverse[0]);
+    glm_vec3_cross(inverse[0], forward, inverse[1]);
+    glm_vec3_negate_to(forward, inverse[2]);
+    glm_vec3_copy(eye, inverse[3]);
+    glm_mat4_copy(inverse, view);
+    glm_inv_tr(view);
     glm_perspective_rh_zo(glm_rad(fov), aspect, near, far, projection);
     projection[1][1] = -projection[1][1]; // Vulkan's y points down
-    glm_mat4_inv(view, inverse);
     mat4 last;
     glm_mat4_mul(projection, view, last);
     memcpy(out->last.m, last, sizeof last);
@@ -97,7 +120,7 @@ static bool fill_camera(const scene_camera *c, const field_context *context, flo
     memcpy(out->projection.m, projection, sizeof projection);
     memcpy(out->view_inverse.m, inverse, sizeof inverse);
     float half = tanf(glm_rad(fov) * 0.5f);
-    out->eye = (shared_vec4){{eye[0], eye[1], eye[2], 0}};
+    out->eye = (shared_vec4){{eye[0], eye[1], eye[2], moved}};
     out->lens = (shared_vec4){{half * aspect, half, near, far}};
     return true;
 }

@@ -14,6 +14,8 @@ typedef struct scene_camera {
     const field *pitch;      // degrees above the horizon of the eye as seen from the target
     const field *fov;        // vertical field of view, degrees
     const field *near, *far; // metres
+    const field
+        *orthographic; // metres from the lower edge of the picture to the upper; 0: perspective
 } scene_camera;
 
 typedef struct scene_sun {

@@ -27,6 +27,8 @@ const scene_value scene_camera_values[] = {
     {VALUE(scene_camera, fov, "degrees", "vertical field of view"), NUMBER(40, 1, 170)},
     {VALUE(scene_camera, near, "m", "nothing nearer is seen"), NUMBER(0.1f, 0.0001f, INFINITY)},
     {VALUE(scene_camera, far, "m", "nothing solid farther away is seen"), NUMBER(1000, 0.001f, INFINITY)},
+    {VALUE(scene_camera, orthographic, "m", "height of what is seen by lines of sight that are parallel, whatever `fov` says; 0: perspective"),
+        NUMBER(0, 0, 1e6f)},
     END,
 };
 

@@ -169,6 +169,28 @@ static void lens_and_projection_agree(void **state) {
     near3(at, 1, -1, (double)at[2]); // the upper right corner; y points down in the picture
 }
 
+// What is 1 m off the axis is half the way to the edge of a picture of 4 m, however deep it lies and
+// wherever the camera stands; within half a pixel of a thousand.
+static void an_orthographic_picture_is_so_high(void **state) {
+    stage *s = *state;
+    s->scene.camera.orthographic = number(s, 4);
+    for (int turn = 0; turn < 8; turn++) {
+        orbit(s, 25 + 45.0f * (float)turn, 20);
+        for (int deep = -1; deep <= 1; deep++) {
+            const float *m = s->frame.view_inverse.m;
+            float at[3], seen[4], clip[3];
+            for (int i = 0; i < 3; i++)
+                at[i] = (float)(1 + i) + m[i] + 0.5f * m[4 + i] + 2 * (float)deep * m[8 + i];
+            see(s, at, seen);
+            project(s, seen, clip);
+            assert_float_equal(clip[0], 0.5, 1e-3);
+            assert_float_equal(clip[1], -0.25, 1e-3);
+            assert_true(clip[2] > 0 && clip[2] < 1);
+        }
+        assert_float_equal(s->frame.eye.v[3], 4000 - 4, 1e-2); // from where it is said to stand
+    }
+}
+
 static void lens_out_of_range_is_brought_into_it(void **state) {
     stage *s = *state;
     s->scene.camera.fov = number(s, 0);
@@ -336,6 +358,7 @@ int main(void) {
         STAGE_TEST(straight_down_and_up_have_y_on_the_vertical),
         STAGE_TEST(eye_at_the_target_looks_along_y),
         STAGE_TEST(lens_and_projection_agree),
+        STAGE_TEST(an_orthographic_picture_is_so_high),
         STAGE_TEST(lens_out_of_range_is_brought_into_it),
         STAGE_TEST(view_inverse_undoes_view),
         STAGE_TEST(sun_direction_follows_azimuth_and_elevation),

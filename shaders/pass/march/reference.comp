@@ -172,9 +172,10 @@ bool collide(inout path_state s, vec3 p, float d, vec3 gone, float bound, vec2 r
 // The path has met a surface, which scatters what it does not swallow.
 path_vertex meet_surface(inout path_state s) {
     vec3 p = s.walk.origin + s.hit.distance * s.walk.direction;
-    float lift = 1e-4 * max(1.0, max(s.hit.distance, brightest(p))); // off the face: rounding
+    float behind = s.bounce == 0 ? frame.eye.w : 0.0; // of an orthographic camera
+    float lift = 1e-4 * max(1.0, max(s.hit.distance - behind, brightest(p))) + 2e-7 * behind; // off the face: rounding
     if (s.bounce == 0) {
-        float kept = exp(-haze * s.hit.distance);
+        float kept = exp(-haze * max(s.hit.distance - frame.eye.w, 0.0));
         s.light += s.weight * (1.0 - kept) * frame.sky_horizon.rgb;
         s.weight *= kept;
     }

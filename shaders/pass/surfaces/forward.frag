@@ -51,5 +51,5 @@ void main() {
     vec3 p = lifted_point(distance_along, along, n, lod, picture.y);
     shaded s = shading_of(p, n, -normalize(along), as_kept(base.rgb), part.surface);
     vec3 lit = surface_light(s, uvec2(gl_FragCoord.xy)) + part.emission.rgb * tint.w;
-    color = vec4(mix(frame.sky_horizon.rgb, lit, exp(-haze * away)), 1.0);
+    color = vec4(mix(frame.sky_horizon.rgb, lit, exp(-haze * max(away - frame.eye.w, 0.0))), 1.0);
 }

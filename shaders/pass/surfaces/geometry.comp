@@ -26,7 +26,7 @@ bool is_shown(uint mesh) {
 #if BY_DISTANCE
 bool is_too_far(bvh_instance item) {
     if (max_distance == 0.0 || (placed[item.what.x >> 5] >> (item.what.x & 31u) & 1u) == 0u) return false;
-    return distance(0.5 * (item.low + item.high), frame.eye.xyz) > max_distance;
+    return distance(0.5 * (item.low + item.high), frame.eye.xyz) - frame.eye.w > max_distance;
 }
 
 // What the root of the item's tree has below it. The ray is in the space of its mesh.

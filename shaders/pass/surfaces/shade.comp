@@ -52,5 +52,5 @@ void main() {
 #if HAS_EMISSION
     lit += texelFetch(emission, ivec2(uv * vec2(textureSize(emission, 0))), 0).rgb;
 #endif
-    imageStore(color, pixel, vec4(mix(frame.sky_horizon.rgb, lit, exp(-haze * s.distance)), 1.0));
+    imageStore(color, pixel, vec4(mix(frame.sky_horizon.rgb, lit, exp(-haze * max(s.distance - frame.eye.w, 0.0))), 1.0));
 }

@@ -200,6 +200,7 @@ static bool write_camera(drawn *d, uint32_t height) {
 bool drawn_cull(drawn *d, gpu_buffer *views, size_t count, uint32_t height, float lod, float most) {
     d->views = views;
     d->levels = lod > 0;
+    if (most > 0) most += d->p->host->frame->eye.v[3]; // of a camera that has stepped back
     bool done = (views || write_camera(d, height)) && fit_views(d, count);
     for (size_t i = 0; i < d->body_count && done; i++) {
         drawn_body *body = &d->bodies[i];
