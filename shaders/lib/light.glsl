@@ -38,6 +38,21 @@ light_entry light_entry_of(int index) {
     return light_entry(texelFetch(lights, ivec2(0, index), 0), texelFetch(lights, ivec2(1, index), 0),
                        texelFetch(lights, ivec2(2, index), 0), texelFetch(lights, ivec2(3, index), 0));
 }
+#elif defined(RIG) && RIG != RIG_NONE
+
+// Three suns, red, green and blue, each of which sends what a white wall has a radiance of 1 by; or
+// three dark ones. The shader includes lib/frame.glsl before.
+int light_count() {
+    return 3;
+}
+
+light_entry light_entry_of(int index) {
+    vec3 which = vec3(equal(ivec3(index), ivec3(0, 1, 2)));
+    vec3 to = (frame.view_inverse * vec4(which * vec3(1.0, 1.0, -1.0), 0.0)).xyz;
+    if (RIG != RIG_RIGHT_TOP_BACK) to = -to;
+    if (RIG == RIG_OWN) which = vec3(0.0);
+    return light_entry(vec4(to, 0.0), vec4(3.14159265 * which, float(LIGHT_SUN)), vec4(0.0), vec4(0.0));
+}
 #else
 layout(std140) uniform Lights { light_block light_list; };
 

@@ -29,19 +29,24 @@ vec2 lighting_shadow(int index, vec3 p) {
     return shadow_map_read(shadow, shadow_map_of(lights, index), p);
 }
 #endif
-#if HAS_LIGHTS && HAS_GLOW
 
 // Radiance scattered at p into the direction `way` by a medium of scattering coefficient 1 (1/m)
-// and mean cosine g, from all light but what comes straight from the lights.
-vec3 lighting_scattered(vec3 p, vec3 way, float g) {
-    vec3 low = texelFetch(lights, ivec2(8, 0), 0).xyz, high = texelFetch(lights, ivec2(9, 0), 0).xyz;
-    vec3 size = vec3(textureSize(glow, 0)) / vec3(1.0, 1.0, 3.0), sum;
+// and mean cosine g, from all light but what comes straight from the lights: of a pass whose
+// outputs are `rows` and `around`.
+vec3 lighting_scattered_by(sampler2D rows, sampler3D around, vec3 p, vec3 way, float g) {
+    vec3 low = texelFetch(rows, ivec2(8, 0), 0).xyz, high = texelFetch(rows, ivec2(9, 0), 0).xyz;
+    vec3 size = vec3(textureSize(around, 0)) / vec3(1.0, 1.0, 3.0), sum;
     vec3 at = clamp((p - low) / max(high - low, vec3(1e-6)), 0.5 / size, 1.0 - 0.5 / size);
     for (int i = 0; i < 3; i++) { // a third of the image for each colour
-        vec4 moments = textureLod(glow, vec3(at.xy, (at.z + float(i)) / 3.0), 0.0);
+        vec4 moments = textureLod(around, vec3(at.xy, (at.z + float(i)) / 3.0), 0.0);
         sum[i] = moments.x + 3.0 * g * dot(moments.yzw, way);
     }
     return max(sum, vec3(0.0));
+}
+#if HAS_LIGHTS && HAS_GLOW
+
+vec3 lighting_scattered(vec3 p, vec3 way, float g) {
+    return lighting_scattered_by(lights, glow, p, way, g);
 }
 #endif
 #endif

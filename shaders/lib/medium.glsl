@@ -26,9 +26,24 @@ uniform vec3 blackbody_tint;       //= {1, 1, 1} [0, 100] color : factor of a bl
 #include "lib/blackbody.glsl"
 #include "lib/phase.glsl"
 
+// A pass whose colours are three lights (the option `rig` of lighting) takes the medium as grey, and
+// without its own light.
+#if defined(RIG) && RIG != RIG_NONE && RIG != RIG_OWN
+#define MEDIUM_IS_GREY 1
+vec3 medium_dyed(vec3 v) { return vec3((v.x + v.y + v.z) / 3.0); }
+#else
+#define MEDIUM_IS_GREY 0
+vec3 medium_dyed(vec3 v) { return v; }
+#endif
+
 // Extinction of density 1, by colour.
 vec3 medium_extinction() {
-    return extinction * (1.0 - (1.0 - albedo) * sqrt(absorption_color));
+    return medium_dyed(extinction * (1.0 - (1.0 - albedo) * sqrt(absorption_color)));
+}
+
+// Scattering of density 1, by colour, before the tint.
+vec3 medium_albedo() {
+    return medium_dyed(extinction * albedo);
 }
 
 #ifndef WITHOUT_FIELDS
@@ -43,12 +58,15 @@ float medium_density(vec3 p) {
 // What of it is scattering, at a point where the density is not 0.
 vec3 medium_scattering(vec3 p) {
 #if HAS_TINT
-    return extinction * albedo * clamp(field_tint(p), 0.0, 1.0);
+    return medium_dyed(extinction * albedo * clamp(field_tint(p), 0.0, 1.0));
 #else
-    return extinction * albedo;
+    return medium_albedo();
 #endif
 }
 
+#if MEDIUM_IS_GREY
+vec3 medium_emission(vec3 p, float d) { return vec3(0.0); }
+#else
 // Radiance given off per metre, W/m^3/sr, at a point where the density is d.
 vec3 medium_emission(vec3 p, float d) {
     vec3 given = vec3(0.0);
@@ -64,6 +82,7 @@ vec3 medium_emission(vec3 p, float d) {
 #endif
     return mix(vec3(0.0), min(given, MEDIUM_MOST), greaterThan(given, vec3(0.0))); // of no number: 0
 }
+#endif
 #endif
 
 // Phase function (1/sr) of the cosine between the ways before and after; `spread` in 0..1 is a

@@ -54,6 +54,7 @@ field_grid *effect_add_bake(effect *e, const field *node, const effect_bake_desc
                  .size = {desc->size[0], desc->size[1], desc->size[2]},
                  .channel_count = node->components == 1 ? 1 : 4,
                  .repeats = desc->repeats,
+                 .content = node,
                  .levels = desc->levels,
                  .state = {.active = desc->box},
                  .update = update},

@@ -125,5 +125,6 @@ field *field_advect(arena *memory, const field *node) {
     for (int k = 0; k < count; k++)
         sum = compose_two(memory, "add", k == 0 ? node->args[MEAN] : sum,
                           phase(memory, node, k, count));
+    if (sum) sum->velocity = node->args[VELOCITY];
     return sum;
 }

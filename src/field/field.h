@@ -87,6 +87,8 @@ struct field {
     uint8_t options[FIELD_MAX_OPTIONS]; // index of the word
     float value[4];                     // kind "constant"
     int index; // "param": index; "call": function; "grid": first channel; "swizzle": 2 bits each
+    const field
+        *velocity; // of what a flow carries, where "advect" made the node (m/s); NULL: not known
     const void
         *object; // "curve": curve; "palette": palette; "grid": field_grid; "glsl": field_glsl
 };
@@ -154,4 +156,9 @@ float field_longest(const field *node, const field_context *context);
 size_t field_grids(const field *node, const field_grid **out, size_t capacity);
 // Whether the tree samples channels of that image of the grid.
 bool field_samples(const field *node, const field_grid *grid, int image);
+// The velocity (m/s) by which what the tree says moves, where it is carried by a flow: that of a
+// grid with a velocity, of "advect", and of these bent or moved; of a sum the mean by what is
+// added. NULL: nothing in it says one. Grids are asked for it, so call it before they play. Nodes
+// live in `memory`.
+const field *field_velocity(arena *memory, const field *node);
 void field_print(const field *node, strbuf *out); // one line, for messages and `roil info graph`

@@ -54,6 +54,7 @@ struct field_grid {
     bool never_waits;  // never waits for data: another frame stands in for one that is late
     bool simulated;    // each frame follows from the one before
     const field_extrusion *extruded; // images are slices round an axis; NULL: they fill the box
+    const struct field *content;     // of a bake: what it holds; NULL: not known
     const char *label;               // what the script calls it; NULL: it has no name
     field_grid_state state;          // current; set by update
     // Brings `state` to a time, uploading what is needed. Waits for data that is not decoded yet,

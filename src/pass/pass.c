@@ -273,6 +273,11 @@ size_t pass_instances(const pass *p, scene_instances *const **out) {
     return p->instances_count;
 }
 
+graph_image pass_input(const pass *p, const char *name) {
+    int index = pass_find_image(p, name);
+    return index >= 0 && !p->face->images[index].output ? p->images[index] : (graph_image){0};
+}
+
 graph_image pass_output(const pass *p, const char *name) {
     int index = pass_find_image(p, name);
     return index >= 0 && p->face->images[index].output ? p->images[index] : (graph_image){0};

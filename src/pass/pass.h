@@ -180,6 +180,8 @@ size_t pass_instances(const pass *p, scene_instances *const **out);
 void pass_add_source(pass *p, pass *source);
 // Does the same for uniforms alone, after pass_declare. A second call does no harm.
 void pass_add_uniforms_of(pass *p, pass *source);
+// Returns the pass that makes an image; NULL: none, or one declared later.
+pass *pass_writer(const pass_host *host, graph_image image);
 void pass_set_bake(pass *p, field_grid *grid); // bake only: the grid it fills
 // Tells what `name` may be set as, for the generic setter of Lua and --set.
 typedef enum pass_key { PASS_UNKNOWN, PASS_UNIFORM, PASS_OPTION, PASS_FIELD, PASS_IMAGE } pass_key;
@@ -206,6 +208,7 @@ void pass_list_memory(const pass *p, budget_list *out);
 bool pass_allocate(pass *p);
 // After pass_build: evaluates the numbers of a frame as recording it would. Any thread.
 bool pass_rehearse(pass *p);
+graph_image pass_input(const pass *p, const char *name);    // what it was given; zero: nothing
 graph_image pass_output(const pass *p, const char *name);   // after pass_declare; zero when unknown
 const field *pass_get_uniform(const pass *p, size_t index); // NULL: not set
 // Returns what a uniform is while it is not set. `*declared` is its declaration, in this pass or in

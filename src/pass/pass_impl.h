@@ -198,9 +198,8 @@ bool pass_run(pass *p);     // one dispatch or full-screen draw over the first o
 bool pass_record(pass *p);  // both
 // Returns that image of a grid; zero: it is not of the graph.
 graph_image pass_grid_image(const pass_host *host, const field_grid *grid, int index);
-pass *pass_writer(const pass_host *host, graph_image image); // NULL: of no pass declared before
-int pass_find_image(const pass *p, const char *name);        // index in face->images, -1: none
-size_t pass_image_index(const pass *p, const char *name);    // the same; aborts where there is none
+int pass_find_image(const pass *p, const char *name);     // index in face->images, -1: none
+size_t pass_image_index(const pass *p, const char *name); // the same; aborts where there is none
 // Adds an image that the pass alone draws to, at its scale.
 graph_image pass_add_target(pass *p, const char *name, gpu_format format);
 // Adds an output of a size of its own. `desc` counts but for its format; its name may be NULL.

@@ -14,6 +14,7 @@ extern const pass_type lbm_source_type;
 extern const pass_type lbm_templates_type;
 extern const pass_type lbm_type;
 extern const pass_type lighting_type;
+extern const pass_type maps_type;
 extern const pass_type march_type;
 extern const pass_type meter_type;
 extern const pass_type particles_type;
@@ -75,6 +76,7 @@ static const pass_type *const types[] = {
     &forward_type,
     &lighting_type,
     &march_type,
+    &maps_type,
     &stack_type,
     &reference_type,
     &over_type,

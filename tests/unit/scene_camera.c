@@ -169,8 +169,8 @@ static void lens_and_projection_agree(void **state) {
     near3(at, 1, -1, (double)at[2]); // the upper right corner; y points down in the picture
 }
 
-// What is 1 m off the axis is half the way to the edge of a picture of 4 m, however deep it lies and
-// wherever the camera stands; within half a pixel of a thousand.
+// What is 1 m off the axis is half the way to the edge of a picture of 4 m, however deep it lies
+// and wherever the camera stands; within half a pixel of a thousand.
 static void an_orthographic_picture_is_so_high(void **state) {
     stage *s = *state;
     s->scene.camera.orthographic = number(s, 4);

@@ -4,6 +4,7 @@
 //@ option shadow_resolution = 96 {16, 32, 48, 64, 96, 128, 192, 256} : texels of `shadow` along each edge, for each light
 //@ option glow_resolution = 32 {8, 16, 24, 32} : voxels of `glow` along each edge of the volume's box
 //@ option fire_lights = 8 {0, 1, 8} : lights that stand for the volume's fire where it falls on meshes
+//@ option rig = none {none, right_top_back, left_bottom_front, own} : instead of the scene's lights, sky and meshes: three suns of pi W/m^2, red, green and blue, from the right, the top and behind of what the camera sees, or from the left, below and the camera's side, on the medium in grey and without its fire, a channel for each; or (own) nothing but its fire: what `export sheet` keeps
 //@ counter samples : points at which the density was evaluated
 uniform int sweeps;                //= 3 [0, 32] : of light through `glow` at most, each of which scatters it once more, and a coarser grid after each brings it far; 0: light that nothing has scattered yet
 uniform float ambient;             //= 1 [0, 10] : factor of the light from the sky
@@ -27,6 +28,7 @@ layout(rgba32f) writeonly uniform image3D scattering_kept; // coefficient of den
 layout(rgba32f) writeonly uniform image3D around_kept;     // light that enters the box, in each of the directions
 layout(rgba32f) writeonly uniform image3D fire_kept;       // light that leaves the volume (W/m^3/sr); which way
 
+#include "lib/frame.glsl"
 #include "lib/medium.glsl"
 #include "lib/light.glsl"
 #include "lib/shadow_map.glsl"

@@ -78,6 +78,10 @@ bool may_hold(vec3 p) {
 #endif
 }
 
+#ifndef MAPS
+#define MAPS 0 // more is kept of what a ray sees: maps.comp
+#endif
+
 #include "bricks.glsl"
 #include "light.glsl"
 #include "sum.glsl"
@@ -110,6 +114,9 @@ void main() {
     imageStore(edge, pixel, vec4(1e9, NOTHING, 0.0, 0.0));
     imageStore(transmittance, pixel, vec4(1.0));
     imageStore(reach, pixel, vec4(stop * length(frame_ray(uv))));
+#if MAPS
+    maps_store_nothing(pixel);
+#endif
 }
 #endif
 
@@ -157,6 +164,9 @@ void main() {
 
     pixel_width = 2.0 * frame.lens.y / float(size.y);
     ray_state ray = ray_begin();
+#if MAPS
+    maps_begin(frame.eye.xyz, direction, metres);
+#endif
 #if VIEW == VIEW_NOISE
     vec3 front = frame.eye.xyz + range.x * direction;
     if (min(range.y, last) > range.x) ray = ray_state(vec3(field_noise(front)), vec3(0.0), vec2(range.x, 1.0), range.x);
@@ -183,5 +193,8 @@ void main() {
     imageStore(edge, pixel, vec4(all ? 1e9 : stop, clamp(ray.until / metres, NOTHING, stop), 0.0, 0.0));
     imageStore(transmittance, pixel, vec4(ray.transmittance, 1.0));
     imageStore(reach, pixel, vec4(ray.reach.y > 0.0 ? ray.reach.x / ray.reach.y : stop * metres));
+#if MAPS
+    maps_store(pixel);
+#endif
 }
 #endif

@@ -43,12 +43,19 @@ vec3 held(vec3 x) {
     return mix((1.0 - exp(-x)) / max(x, 1e-6), 1.0 - x * (0.5 - x / 6.0), lessThan(x, vec3(1e-2)));
 }
 
+#if MAPS
+#include "maps.glsl"
+#endif
+
 // A stretch of `length` metres that is everywhere as `n`, around the point `at` metres along.
 void add_stretch(inout ray_state ray, node n, vec3 lit, float length, float at) {
     vec3 x = n.density * length * medium_extinction();
     vec3 whole = held(x);
     float gained = mean(ray.transmittance * x * whole);
     ray.light += ray.transmittance * whole * length * (n.own + n.scattering * lit);
+#if MAPS
+    maps_add(ray.transmittance * whole * length, n, lit, gained, length, at);
+#endif
     ray.transmittance *= exp(-x);
     ray.reach += gained * vec2(at, 1.0);
     if (n.density > 0.0) ray.until = at + 0.5 * length;
@@ -58,6 +65,10 @@ void add_paper(inout ray_state ray, vec3 p, float part, float at) {
     ray.until = at;
     ray.reach += ray.transmittance.x * part * vec2(at, 1.0);
     ray.light += ray.transmittance * part * field_radiance(p);
+#if MAPS
+    maps_add(ray.transmittance * part, node(0.0, field_radiance(p), vec3(0.0)), vec3(0.0),
+             ray.transmittance.x * part, 0.0, at);
+#endif
     ray.transmittance *= 1.0 - part;
 }
 

@@ -67,7 +67,7 @@ static uint32_t level_of(lighting_stage stage) {
     GRID_NAMES(NAME), BUFFER_NAMES(NAME), COARSE_NAMES(NAME), NAME(lights_made),                   \
         NAME(shadow_made), NAME(lights), NAME(shadow), NAME(glow), NAME(albedo), NAME(sweeps),     \
         NAME(hastened), NAME(last_sweep), NAME(shadow_resolution), NAME(glow_resolution),          \
-        NAME(fire_lights)
+        NAME(fire_lights), NAME(rig)
 enum { NAMES(KERNEL_NAME_ID) };
 static const char *const names[] = {NAMES(KERNEL_NAME_TEXT)};
 
@@ -103,7 +103,8 @@ static const struct {
 };
 
 typedef struct lighting_state {
-    uint32_t declared; // lights of the scene, its sun among them
+    bool rig;          // has lights of its own
+    uint32_t declared; // lights of the scene, its sun among them, or of the rig
     uint32_t shadow_size, glow_size, fire_count;
     uint32_t shadow_parts; // threads of a ray, in lighting/shadow.glsl
     uint32_t rays_apart;   // of threads, one traces rays to meshes
@@ -216,7 +217,8 @@ static uint32_t choose_slices(const gpu_profile *device, uint32_t size) {
 static bool lighting_declare(pass *p) {
     const scene *around = p->host->scene;
     lighting_state *s = p->state = arena_alloc(p->host->memory, sizeof *s);
-    s->declared = around ? (uint32_t)around->light_count + 1 : 1;
+    s->rig = !pass_option_is(p, N_rig, "none");
+    s->declared = s->rig ? 3 : around ? (uint32_t)around->light_count + 1 : 1;
     s->shadow_size = pass_option_number(p, N_shadow_resolution);
     const gpu_profile *device = gpu_get_profile(p->host->device);
     s->shadow_parts = choose_shadow_parts(device, s->shadow_size);
@@ -224,7 +226,7 @@ static bool lighting_declare(pass *p) {
     while (LOOKS / LOOK_PARTS * s->rays_apart > device->limits.group_threads) s->rays_apart /= 2;
     s->glow_size = pass_option_number(p, N_glow_resolution);
     s->slices_kept = choose_slices(device, s->glow_size);
-    s->fire_count = pass_option_number(p, N_fire_lights);
+    s->fire_count = s->rig ? 0 : pass_option_number(p, N_fire_lights);
     return pass_check_density(p) && add_images(p) && add_parts(p);
 }
 
@@ -248,7 +250,7 @@ static bool lighting_defines(pass *p, size_t index, pass_defines *out) {
 
 static bool lighting_update(pass *p) {
     const lighting_state *s = p->state;
-    if (p->host->lights->count.v[0] != s->declared)
+    if (!s->rig && p->host->lights->count.v[0] != s->declared)
         return err_set("%s: made for %u lights (the sun is one), but the effect has %u; set "
                        "'lights' of the effect before it",
                        p->label, s->declared, p->host->lights->count.v[0]);

@@ -24,6 +24,7 @@ typedef struct march_state {
     bool adaptive; // has code for a tolerance
     bool teams;    // has code for several threads a ray
     bool software; // the device is: it has no branches
+    bool maps;     // keeps more of what a ray sees, of which it has one thread and even steps
     int32_t team;  // threads a ray, in this frame
     box3 box;      // that rays are cut to, in this frame
     bricks bricks;
@@ -37,6 +38,7 @@ static bool record_bricks(pass *p) {
 static bool march_declare(pass *p) {
     march_state *s = p->state = arena_alloc(p->host->memory, sizeof *s);
     s->software = gpu_get_profile(p->host->device)->march_by_sides;
+    s->maps = pass_is(p, "maps");
     s->skips = pass_option_is(p, N_skipping, "on");
     s->paper = pass_option_is(p, N_mode, "paper");
     s->noise = pass_option_is(p, N_view, "noise");
@@ -54,6 +56,7 @@ static bool march_declare(pass *p) {
 // says nothing of it is compiled in then.
 static void choose_code(const pass *p) {
     march_state *s = p->state;
+    if (s->maps) return;
     s->adaptive = s->adaptive || pass_gives(p, N_tolerance);
     s->teams =
         s->teams || (!s->noise && ((!s->software && p->scale < 1) || pass_gives(p, N_threads)));
@@ -111,6 +114,7 @@ static bool march_update(pass *p) {
 // A tolerance or threads that someone moves by hand, where the effect says nothing of them.
 static bool follow_code(pass *p) {
     march_state *s = p->state, before = *s;
+    if (s->maps) return true;
     s->adaptive = s->adaptive || pass_value(p, N_tolerance) > 0;
     s->teams = s->teams || (pass_value(p, N_threads) > 1 && !s->noise);
     const bool same = s->adaptive == before.adaptive && s->teams == before.teams;
@@ -153,6 +157,18 @@ static bool march_record(pass *p) {
 const pass_type march_type = {
     .name = "march",
     .shader = "pass/march/march.comp",
+    .kernels = kernels,
+    .kernel_count = MARCH_KERNELS,
+    .names = {names, COUNT_OF(names)},
+    .declare = march_declare,
+    .defines = march_defines,
+    .update = march_update,
+    .record = march_record,
+};
+
+const pass_type maps_type = {
+    .name = "maps",
+    .shader = "pass/march/maps.comp",
     .kernels = kernels,
     .kernel_count = MARCH_KERNELS,
     .names = {names, COUNT_OF(names)},

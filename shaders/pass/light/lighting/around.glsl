@@ -21,6 +21,9 @@ vec3 light_of_surface(vec3 p, bvh_hit hit) {
     return hit.albedo * sum;
 }
 
+#if RIG != RIG_NONE
+vec3 look(vec3 way, int index) { return vec3(0.0); } // a rig is all the light there is
+#else
 // A point in the smoke, by the sequence R3 (Roberts, "The unreasonable effectiveness of quasirandom
 // sequences", 2018); one that is buried only where all are.
 vec3 point_of(int index) {
@@ -46,6 +49,7 @@ vec3 look(vec3 way, int index) {
     float off = 1e-4 + 1e-5 * hit.distance; // the surface, or a ray would meet it again
     return light_of_surface(p + hit.distance * from + off * hit.normal, hit);
 }
+#endif
 
 // Rays that go far take all others of their subgroup with them, so that each has its own on a GPU.
 void main() {

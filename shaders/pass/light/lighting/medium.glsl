@@ -31,6 +31,6 @@ void main() {
     }
     imageStore(medium_kept, voxel, sum / 8.0);
     // Where nothing is, light is as if a little were: what is between voxels is interpolated.
-    imageStore(scattering_kept, voxel, vec4(sum.a > 0.0 ? dye / sum.a : extinction * albedo, 0.0));
+    imageStore(scattering_kept, voxel, vec4(sum.a > 0.0 ? dye / sum.a : medium_albedo(), 0.0));
 }
 #endif
