@@ -424,10 +424,11 @@ char *roil_curve_text(const roil_curve *curve);
 typedef struct roil_camera {
     float eye[3], target[3];    // metres
     float fov;                  // vertical, degrees
+    float orthographic;         // height of what it sees (m), whatever `fov` says; 0: perspective
     float distance, yaw, pitch; // of the eye from the target, as of orbit { } (m, degrees)
 } roil_camera;
-// Returns the camera of the last frame. Its controls are "camera.eye", "camera.target" and
-// "camera.fov".
+// Returns the camera of the last frame. Its controls are "camera.eye", "camera.target",
+// "camera.fov" and "camera.orthographic".
 bool roil_get_camera(roil_effect *e, roil_camera *out);
 // Returns the box that encloses the effect's volumes (m). False: it has none.
 bool roil_get_bounds(roil_effect *e, float low[3], float high[3]);
@@ -683,6 +684,50 @@ roil_volume_info roil_volume_get_info(const roil_volume *v);
 // file failed.
 bool roil_volume_save(roil_volume *v, const char *file);
 bool roil_volume_finish(roil_volume *v); // waits for all files and frees `v`; NULL is allowed
+
+// Export of sheets: frames beside each other in one picture, and maps of what a renderer of sprites
+// cannot know, for engines that play them as flipbooks. They show the medium of one march alone,
+// before nothing: no mesh, sky, sprite or bloom. Alpha is 1 minus the medium's transmittance.
+typedef struct roil_sheet_desc {
+    const char *source; // name of a pass march; NULL: the first
+    // "color,motion,six-way,normal,depth,temperature", or some of these; NULL: "color"
+    const char *maps;
+    const char *light; // of the colour: "shown", tone-mapped by the effect's pass final, "scene",
+                       // before that and linear, or "both"; NULL: "shown"
+    uint32_t columns, rows; // 1 to 64 each; 0: 8
+    uint32_t cell;          // pixels along each side of a cell, 16 to 4096; 0: 256
+    uint32_t gutter; // pixels along the edges of a cell that the medium stays out of, below half
+    bool camera; // keep the effect's camera; else an orthographic one looks the same way and is set
+                 // so that all that can be seen fills the cells
+    double first, last; // frames that will be seen
+} roil_sheet_desc;
+typedef struct roil_sheet_options {
+    const char *engine; // whose signs, encodings and alpha: "unity", "unreal", "godot" or "labs";
+                        // NULL: none's
+    const char *format; // "png", "png16", "exr" or "tga"; NULL: by the name of the file
+    const char *alpha;  // "premultiplied", "straight" or "both"; NULL: as the engine wants it, else
+                        // premultiplied
+    bool crop;          // cut the cells to what is used in any
+    double fps;         // cells a second, above 0
+    double loop;        // seconds after which it repeats; 0: it does not
+    uint32_t count;     // cells that are used; 0: all
+    const char *page;   // .html file that plays the sheet; NULL: none
+    const char *const *notes; // lines for the description, such as how a loop was made
+    size_t note_count;
+} roil_sheet_options;
+typedef struct roil_sheet roil_sheet;
+// Call it after roil_load and before roil_prepare, which then takes the size of a cell; it sets the
+// effect's camera. NULL with a message, as where nothing says a velocity. Free it before the
+// effect.
+roil_sheet *roil_sheet_create(roil_effect *e, const roil_sheet_desc *desc);
+// Adds the last frame to a cell, times a weight: cells to which several frames are added dissolve
+// from one to the other.
+bool roil_sheet_add(roil_sheet *s, uint32_t cell, double weight);
+// Writes "fire.png", "fire-motion.png" and so on, and what is in them as "fire.json". Only once.
+bool roil_sheet_save(roil_sheet *s, const char *file, const roil_sheet_options *options);
+// A sentence on what was written, after roil_sheet_save; valid until roil_sheet_free.
+const char *roil_sheet_summary(const roil_sheet *s);
+void roil_sheet_free(roil_sheet *s); // NULL is allowed
 
 // ---- reference --------------------------------------------------------------------------------
 // Texts for people, printed from the tables that the library itself uses. Each returns NULL with a

@@ -15,7 +15,8 @@ int cmd_new(int argc, const char **argv);
 int cmd_check(int argc, const char **argv);
 int cmd_info(int argc, const char **argv);
 int cmd_export(int argc, const char **argv);
-int export_vdb(int argc, const char **argv); // cmd_export
+int export_vdb(int argc, const char **argv); // this and the next: cmd_export
+int export_sheet(int argc, const char **argv);
 int cmd_compare(int argc, const char **argv);
 int cmd_bench(int argc, const char **argv);
 int cmd_tune(int argc, const char **argv);

@@ -1,5 +1,5 @@
 // roil export raw 'FILES*.vdb' -o FILE.raw: writes a VDB sequence as plain voxels. `roil export
-// vdb` is in export_vdb.c.
+// vdb` is in export_vdb.c, `roil export sheet` in export_sheet.c.
 #include "app/app.h"
 #include <popt.h>
 #include <stdio.h>
@@ -7,8 +7,8 @@
 
 static int usage(const char *message) {
     return app_fail(APP_BAD_USAGE,
-                    "export: %s; usage: roil export raw 'FILES*.vdb' -o FILE.raw, or roil "
-                    "export vdb EFFECT.lua -o DIR/%%04d.vdb",
+                    "export: %s; usage: roil export raw 'FILES*.vdb' -o FILE.raw, roil export "
+                    "vdb EFFECT.lua -o DIR/%%04d.vdb, or roil export sheet EFFECT.lua -o fire.png",
                     message);
 }
 
@@ -21,8 +21,8 @@ static int export_raw(int argc, const char **argv) {
         {"type", 't', POPT_ARG_STRING, &job.type, 0, "u8, u16, f16 or f32 (default: u8)", "TYPE"},
         POPT_AUTOHELP POPT_TABLEEND};
     poptContext context = poptGetContext("roil export", argc, argv, options, 0);
-    poptSetOtherOptionHelp(context,
-                           "raw 'FILES*.vdb' -o FILE.raw (see also: roil export vdb --help)");
+    poptSetOtherOptionHelp(context, "raw 'FILES*.vdb' -o FILE.raw (see also: roil export vdb "
+                                    "--help, roil export sheet --help)");
     int code = poptGetNextOpt(context), status = APP_DONE;
     const char *format = poptGetArg(context);
     job.pattern = poptGetArg(context);
@@ -30,7 +30,8 @@ static int export_raw(int argc, const char **argv) {
         app_refuse_option(context, options, code);
         status = app_fail(APP_BAD_USAGE, "export: %s", roil_error());
     } else if (!format || strcmp(format, "raw") != 0) {
-        status = usage(format ? "the first word is the format, raw or vdb" : "which format?");
+        status =
+            usage(format ? "the first word is the format, raw, vdb or sheet" : "which format?");
     } else if (!job.pattern || poptPeekArg(context)) {
         status = usage(job.pattern ? "quote the pattern of the files" : "which files?");
     } else if (!job.file) {
@@ -48,6 +49,7 @@ static int export_raw(int argc, const char **argv) {
 }
 
 int cmd_export(int argc, const char **argv) {
-    return argc > 1 && strcmp(argv[1], "vdb") == 0 ? export_vdb(argc - 1, argv + 1)
-                                                   : export_raw(argc, argv);
+    if (argc > 1 && strcmp(argv[1], "vdb") == 0) return export_vdb(argc - 1, argv + 1);
+    if (argc > 1 && strcmp(argv[1], "sheet") == 0) return export_sheet(argc - 1, argv + 1);
+    return export_raw(argc, argv);
 }

@@ -27,7 +27,7 @@ static const struct {
     {"check", cmd_check, "load, compile and validate effects; render nothing"},
     {"info", cmd_info, "tell about devices, passes, fields, an effect or a VDB file"},
     {"export", cmd_export,
-     "write the volumes of an effect as VDB files, or a VDB sequence as one raw file"},
+     "write an effect as a sheet for engines, its volumes as VDB files, or a VDB sequence as raw"},
     {"bench", cmd_bench, "measure a sweep: time, memory and error over settings of effects"},
     {"tune", cmd_tune, "find the settings that are cheapest within an error, or best in a time"},
     {"repro", cmd_repro, "make a picture, film or volume again by what it holds, and compare"},

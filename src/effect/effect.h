@@ -143,6 +143,36 @@ typedef struct effect_volume {
 // Adds passes that compute the volume in every frame. Call it after the script has run and before
 // the effect is built.
 bool effect_add_volume(effect *e, const effect_volume_desc *desc, effect_volume *out);
+// ---- sheets: the medium of a march as engines want it, cell by cell ---------------------------
+
+typedef enum effect_map { // what is kept of a medium; all premultiplied, with opacity in alpha
+    EFFECT_MAP_COLOR,     // radiance, scene-linear
+    EFFECT_MAP_SHOWN,     // the same by the effect's pass `final`: exposed and tone-mapped
+    EFFECT_MAP_MOTION,    // heights of the picture a second to the right and up, m/s towards the
+                          // camera; not premultiplied; alpha: weight of opacity and light
+    EFFECT_MAP_RIGHT_TOP_BACK,    // radiance by a white light from there, in each channel
+    EFFECT_MAP_LEFT_BOTTOM_FRONT, // the same
+    EFFECT_MAP_EMISSION,          // radiance of the medium itself
+    EFFECT_MAP_NORMAL,            // to the right, up, towards the camera; not premultiplied
+    EFFECT_MAP_HEAT, // temperature (K), depth from the camera (m); neither premultiplied
+    EFFECT_MAPS
+} effect_map;
+typedef struct effect_sheet_desc {
+    const char *source; // label of a march; NULL: the first
+    bool wanted[EFFECT_MAPS];
+    bool temperature;   // of EFFECT_MAP_HEAT: not the depth alone
+    double first, last; // frames
+} effect_sheet_desc;
+typedef struct effect_sheet {
+    graph_image images[EFFECT_MAPS]; // zero: not wanted; the caller must keep them
+    box3 box;                        // that the medium can be in, in these frames (m)
+    const char *source;              // label of the march
+} effect_sheet;
+// Adds passes that see the medium of a march alone: no mesh, sky or sprite shows in it or hides
+// it, though meshes shadow it in EFFECT_MAP_COLOR. Call it as effect_add_volume. False with a
+// message, as where nothing tells a velocity or a temperature.
+bool effect_add_sheet(effect *e, const effect_sheet_desc *desc, effect_sheet *out);
+
 // Makes the effect draw only kept images and no pictures. Call it before the effect is built.
 void effect_skip_pictures(effect *e);
 

@@ -10,7 +10,10 @@ bool effect_apply_settings(void *user, pass *p);
 // ---- a frame ------------------------------------------------------------------------------------
 
 bool effect_runs(const effect *e, const pass *p); // some part of it; after the graph was compiled
-void effect_tell_hints(effect *e);                // once, then: lengths that do not fit together
+// The box in which the density of a medium can be nonzero at one of these frames, whatever its
+// grids show now. False with a message.
+bool effect_medium_box(effect *e, const field *density, double first, double last, box3 *out);
+void effect_tell_hints(effect *e); // once, then: lengths that do not fit together
 // Evaluates a frame. `again`: the same as the last, for which `update` ran.
 bool effect_evaluate(effect *e, double frame, gpu *device, bool again);
 void effect_reset_instances(effect *e); // to their initial state, since time has gone back

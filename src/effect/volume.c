@@ -136,14 +136,12 @@ static float finest_side(const field_grid *grid) {
     return side;
 }
 
-// Returns the box in which the density of a medium can be nonzero at one of these times, whatever
-// frame its grids show now.
-static bool medium_box(effect *e, const field *density, const effect_volume_desc *desc, box3 *out) {
+bool effect_medium_box(effect *e, const field *density, double first, double last, box3 *out) {
     for (size_t i = 0; i < e->grid_count; i++) e->grids[i]->state.active = e->grids[i]->box;
-    double step = fmax(1, (desc->last - desc->first) / MOST_FRAMES);
+    double step = fmax(1, (last - first) / MOST_FRAMES);
     field_context at = e->context;
     *out = box3_empty();
-    for (double frame = desc->first; frame <= desc->last; frame += step) {
+    for (double frame = first; frame <= last; frame += step) {
         box3 box;
         at.time = (frame - e->first) / e->fps;
         if (!field_bounds(density, &at, &box)) return false;
@@ -166,7 +164,8 @@ static bool find_box(effect *e, const source *s, const effect_volume_desc *desc,
         pass_find_key(s->p, "density", &index);
         const field *density = pass_get_field(s->p, index);
         count = field_grids(density, grids, MOST_GRIDS);
-        if (box3_is_empty(*box) && !medium_box(e, density, desc, box)) return false;
+        if (box3_is_empty(*box) && !effect_medium_box(e, density, desc->first, desc->last, box))
+            return false;
     }
     for (size_t i = 0; i < count && i < MOST_GRIDS; i++)
         if (!grids[i]->repeats) *voxel = fminf(*voxel, finest_side(grids[i]));

@@ -228,13 +228,15 @@ char *roil_curve_text(const roil_curve *c) {
 bool roil_get_camera(roil_effect *e, roil_camera *out) {
     const scene_camera *camera = &effect_scene(e->effect)->camera;
     vec3 eye, target;
-    float fov[4];
+    float fov[4], height[4];
     if (!scene_camera_eye(camera, context_of(e), eye, target) ||
-        !field_eval(camera->fov, context_of(e), (float3){0, 0, 0}, fov))
+        !field_eval(camera->fov, context_of(e), (float3){0, 0, 0}, fov) ||
+        !field_eval(camera->orthographic, context_of(e), (float3){0, 0, 0}, height))
         return false;
     memcpy(out->eye, eye, sizeof out->eye);
     memcpy(out->target, target, sizeof out->target);
     out->fov = clampf(fov[0], 1, 170);
+    out->orthographic = fmaxf(height[0], 0);
     orbit_angles(eye, target, &out->distance, &out->yaw, &out->pitch);
     return true;
 }

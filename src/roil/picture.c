@@ -87,9 +87,19 @@ static linear_image expand_all(const raw_image *raw) {
     return (linear_image){pixels, raw->width, raw->height};
 }
 
+float *roil_read_linear(roil_effect *e, graph_image image, uint32_t *width, uint32_t *height) {
+    raw_image raw = {0};
+    if (!read_raw(e, image, &raw)) return NULL;
+    linear_image all = expand_all(&raw);
+    *width = raw.width;
+    *height = raw.height;
+    free_raw(&raw);
+    return all.pixels;
+}
+
 // ---- display encoding -------------------------------------------------------------------------
 
-static float srgb_encode(float linear) {        // IEC 61966-2-1
+float roil_srgb(float linear) {                 // IEC 61966-2-1
     linear = linear > 0 ? fminf(linear, 1) : 0; // NaN becomes 0
     return linear <= 0.0031308f ? 12.92f * linear : 1.055f * powf(linear, 1 / 2.4f) - 0.055f;
 }
@@ -98,7 +108,7 @@ static float srgb_encode(float linear) {        // IEC 61966-2-1
 // sRGB is steep. They are within half a code of the formula.
 static float table_value(int index) {
     float root = (float)index / ROIL_SRGB_STEPS;
-    return srgb_encode(root * root);
+    return roil_srgb(root * root);
 }
 
 const uint8_t *roil_srgb_table(void) {
@@ -173,7 +183,7 @@ static void encode16(const linear_image *image, alpha_kind alpha, size_t channel
     const float *end = image->pixels + image->width * image->height * 4;
     for (const float *pixel = image->pixels; pixel < end; pixel += 4, out += channels) {
         for (int c = 0; c < 3; c++)
-            out[c] = (uint16_t)lrintf(srgb_encode(color_of(pixel, c, alpha)) * 65535);
+            out[c] = (uint16_t)lrintf(roil_srgb(color_of(pixel, c, alpha)) * 65535);
         if (channels == 4) out[3] = (uint16_t)lrintf(clampf(pixel[3], 0, 1) * 65535);
     }
 }

@@ -44,6 +44,9 @@ void roil_add_param_lua(const roil_effect *e, const effect_control *c, const cha
                         strbuf *out);
 void roil_add_lua_key(const char *name, strbuf *out); // "name = ", in brackets where it must be
 graph_image roil_find_image(roil_effect *e, const char *name); // zero with a message
+// Reads an image of the last frame: four floats a pixel, to be freed. NULL with a message.
+float *roil_read_linear(roil_effect *e, graph_image image, uint32_t *width, uint32_t *height);
+float roil_srgb(float linear); // 0 to 1, encoded for a display
 // Tables from linear values to sRGB codes, indexed by the square root: entry i is the code of
 // (i / ROIL_SRGB_STEPS)^2. Values of the fine table have 8 fractional bits. The first call fills
 // them and must not run on two threads at once.

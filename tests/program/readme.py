@@ -36,7 +36,7 @@ class Readme(Case):
     def test_options_in_it_exist(self):
         options = set(re.findall(r"(?<![\w-])--[a-z][a-z-]*", text_of("README.md")))
         offered = "".join(self.succeeds(*c.split(), "--help") for c in (
-            "render", "live", "new", "check", "info", "export raw", "export vdb", "compare", "repro", "bench", "tune")) + "--help"
+            "render", "live", "new", "check", "info", "export raw", "export vdb", "export sheet", "compare", "repro", "bench", "tune")) + "--help"
         offered += subprocess.run([os.path.join(SOURCE, "scripts/farm"), "--help"], stdout=subprocess.PIPE, text=True,
                                   check=True).stdout
         for option in options:

@@ -1,0 +1,277 @@
+// roil export sheet EFFECT.lua -o fire.png: the frames of an effect as a flipbook, with the maps
+// that engines want beside its colour.
+#include "app/app.h"
+#include "app/device_options.h"
+#include "base/error.h"
+#include "base/file.h"
+#include "base/memory.h"
+#include "base/str.h"
+#include <math.h>
+#include <popt.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct shot { // what a cell is given
+    double frame, weight;
+    uint32_t cell;
+} shot;
+
+typedef struct job {
+    const char *file, *output, *frames_text, *grid;
+    roil_sheet_desc desc;
+    roil_sheet_options options;
+    app_settings settings;
+    app_device device;
+    app_frames frames;
+    int cell, gutter, camera, crop;
+    double loop; // s
+    shot *shots; // by frame
+    size_t shot_count, shot_capacity;
+    char note[256];
+    const char *notes[1];
+} job;
+
+enum { OPTION_SET = 1, OPTION_PRESET };
+
+// ---- options ----------------------------------------------------------------------------------
+
+static bool parse_grid(job *j) {
+    char rest;
+    if (!j->grid) {
+        j->desc.columns = j->desc.rows = 8;
+        return true;
+    }
+    return (sscanf(j->grid, "%2ux%2u%c", &j->desc.columns, &j->desc.rows, &rest) == 2 &&
+            j->desc.columns > 0 && j->desc.rows > 0) ||
+           err_set("--grid '%s'; accepted: COLUMNSxROWS, as 8x8, up to 64x64", j->grid);
+}
+
+static bool take_option(job *j, poptContext context, int option) {
+    char *text = poptGetOptArg(context);
+    if (option == OPTION_SET) return app_add_set(&j->settings, text);
+    app_add_preset(&j->settings, text);
+    return true;
+}
+
+static bool sheet_check_options(job *j, poptContext context) {
+    j->file = poptGetArg(context);
+    if (!j->file) return err_set("which effect? usage: roil export sheet EFFECT.lua -o fire.png");
+    const char *more = poptGetArg(context);
+    if (more) return err_set("'%s': one effect at a time", more);
+    if (!j->output) return err_set("-o is missing");
+    if (strchr(j->output, '%'))
+        return err_set("output '%s'; accepted: one file, as fire.png", j->output);
+    const char *extension = path_extension(j->output);
+    if (strcmp(extension, "png") != 0 && strcmp(extension, "exr") != 0 &&
+        strcmp(extension, "tga") != 0)
+        return err_set("output '%s'; accepted: .png, .exr, .tga", j->output);
+    if (j->cell < 16 || j->cell > 4096)
+        return err_set("--cell %d; accepted: 16 to 4096 pixels", j->cell);
+    if (j->gutter < 0 || j->gutter > 1024)
+        return err_set("--gutter %d; accepted: 0 to 1024 pixels", j->gutter);
+    if (!(j->loop >= 0 && j->loop < 1e5))
+        return err_set("--loop %g; accepted: seconds, above 0", j->loop);
+    if (j->options.page && strcmp(path_extension(j->options.page), "html") != 0)
+        return err_set("--page '%s'; accepted: .html", j->options.page);
+    j->desc.cell = (uint32_t)j->cell;
+    j->desc.gutter = (uint32_t)j->gutter;
+    j->desc.camera = j->camera;
+    j->options.crop = j->crop;
+    return parse_grid(j) && app_check_device(&j->device) &&
+           (!j->frames_text || app_parse_frames(j->frames_text, &j->frames));
+}
+
+static bool sheet_parse(job *j, int argc, const char **argv, poptContext *context) {
+    const struct poptOption options[] = {
+        {"output", 'o', POPT_ARG_STRING, &j->output, 0,
+         "the colours; maps are beside them (fire-motion.png), and what is in them (fire.json)",
+         "FILE.png|.exr|.tga"},
+        {"grid", 'g', POPT_ARG_STRING, &j->grid, 0, "cells across and down (default: 8x8)",
+         "COLUMNSxROWS"},
+        {"cell", '\0', POPT_ARG_INT, &j->cell, 0, "pixels along each side of a cell (default: 256)",
+         "N"},
+        {"gutter", '\0', POPT_ARG_INT, &j->gutter, 0,
+         "pixels at the edges of a cell that stay empty, so that neighbours do not mix in mip "
+         "levels (default: "
+         "4, good for three levels)",
+         "N"},
+        {"frames", 'f', POPT_ARG_STRING, &j->frames_text, 0,
+         "30, or 1-100, or 1-100:2 (default: all, evenly spread over the cells)", "FRAMES"},
+        {"loop", '\0', POPT_ARG_DOUBLE, &j->loop, 0,
+         "let it repeat after so long: the last quarter dissolves into what was before the first "
+         "cell",
+         "SECONDS"},
+        {"maps", '\0', POPT_ARG_STRING, &j->desc.maps, 0,
+         "color, motion, six-way, normal, depth, temperature, separated by commas (default: color)",
+         "NAMES"},
+        {"for", '\0', POPT_ARG_STRING, &j->options.engine, 0,
+         "signs and encodings of an engine: unity, unreal, godot or labs", "ENGINE"},
+        {"light", '\0', POPT_ARG_STRING, &j->desc.light, 0,
+         "of the colours: shown, tone-mapped; scene, before that; or both (default: shown)",
+         "WORD"},
+        {"alpha", '\0', POPT_ARG_STRING, &j->options.alpha, 0,
+         "premultiplied, straight or both (default: premultiplied, or as the engine has it)",
+         "WORD"},
+        {"format", '\0', POPT_ARG_STRING, &j->options.format, 0,
+         "png, png16 (16 bits a channel), exr or tga (default: by the name)", "WORD"},
+        {"crop", '\0', POPT_ARG_NONE, &j->crop, 0, "cut the cells to what is used in any", NULL},
+        {"camera", '\0', POPT_ARG_NONE, &j->camera, 0,
+         "keep the effect's camera (default: orthographic, looking the same way, around all of the "
+         "medium)",
+         NULL},
+        {"source", '\0', POPT_ARG_STRING, &j->desc.source, 0, "a pass march (default: the first)",
+         "NAME"},
+        {"page", '\0', POPT_ARG_STRING, &j->options.page, 0,
+         "a page for a browser that plays the sheet, lights it and shows its maps", "FILE.html"},
+        {"set", '\0', POPT_ARG_STRING, NULL, OPTION_SET, "as in roil render", "NAME=VALUE"},
+        {"preset", '\0', POPT_ARG_STRING, NULL, OPTION_PRESET, "as in roil render",
+         "NAME|FILE.lua"},
+        app_device_rows(&j->device),
+        POPT_AUTOHELP POPT_TABLEEND};
+    *context = poptGetContext("roil export sheet", argc, argv, options, 0);
+    poptSetOtherOptionHelp(*context, "EFFECT.lua -o fire.png [options]");
+    int option;
+    while ((option = poptGetNextOpt(*context)) > 0)
+        if (!take_option(j, *context, option)) return false;
+    if (option < -1) return app_refuse_option(*context, options, option);
+    return sheet_check_options(j, *context);
+}
+
+// ---- which frame goes where -------------------------------------------------------------------
+
+static void add_shot(job *j, double frame, uint32_t cell, double weight) {
+    MEM_RESERVE(j->shots, j->shot_count + 1, j->shot_capacity);
+    j->shots[j->shot_count++] = (shot){frame, weight, cell};
+}
+
+static int by_frame(const void *a, const void *b) {
+    const shot *first = a, *second = b;
+    return (first->frame > second->frame) - (first->frame < second->frame);
+}
+
+static bool plan_frames(job *j, const roil_effect_info *info) {
+    const size_t cells = (size_t)j->desc.columns * j->desc.rows;
+    double step = fmax((double)info->frames / (double)cells, 1);
+    if (j->frames.count > cells)
+        return err_set(
+            "%zu frames in %zu cells; a larger --grid or a step (1-100:2) makes them fit",
+            j->frames.count, cells);
+    if (j->frames.count) {
+        for (size_t i = 0; i < j->frames.count; i++)
+            add_shot(j, j->frames.numbers[i], (uint32_t)i, 1);
+        step = j->frames.step;
+    } else {
+        size_t count = info->frames < cells ? info->frames : cells;
+        for (size_t i = 0; i < count; i++)
+            add_shot(j, info->first_frame + step * (double)i, (uint32_t)i, 1);
+    }
+    j->options.count = (uint32_t)j->shot_count;
+    j->options.fps = info->fps / step;
+    app_warn_of_frames(&j->frames, info);
+    return true;
+}
+
+// The last quarter of the cells dissolves into what came before the first: both go on meanwhile,
+// each along its own motion.
+static bool plan_loop(job *j, const roil_effect_info *info) {
+    const uint32_t cells = j->desc.columns * j->desc.rows, fade = cells / 4;
+    const double step = j->loop * info->fps / cells;
+    const double first = j->frames.count ? j->frames.numbers[0] : info->first_frame + step * fade;
+    const double end = info->first_frame + info->frames;
+    if (cells < 4) return err_set("a loop of %u cells; at least 4", cells);
+    if (first - step * fade < info->first_frame - 1e-6 || first + step * cells > end + 1e-6)
+        return err_set(
+            "a loop of %g s and the quarter of it before do not fit into the effect's %g s%s",
+            j->loop, info->frames / info->fps,
+            j->frames.count ? "; --frames says where it begins" : "");
+    for (uint32_t i = 0; i < cells; i++) {
+        const double before = i < cells - fade ? 0 : (double)(i - (cells - fade) + 1) / (fade + 1);
+        add_shot(j, first + step * i, i, 1 - before);
+        if (before > 0) add_shot(j, first + step * ((double)i - cells), i, before);
+    }
+    snprintf(j->note, sizeof j->note,
+             "loop: the last %u cells dissolve into the %u before the first", fade, fade);
+    j->notes[0] = j->note;
+    j->options.notes = j->notes;
+    j->options.note_count = 1;
+    j->options.count = cells;
+    j->options.fps = info->fps / step;
+    j->options.loop = j->loop;
+    return true;
+}
+
+static bool plan(job *j, roil_effect *e) {
+    roil_effect_info info = roil_get_info(e);
+    if (!(j->loop > 0 ? plan_loop(j, &info) : plan_frames(j, &info))) return false;
+    qsort(j->shots, j->shot_count, sizeof *j->shots, by_frame);
+    j->desc.first = j->shots[0].frame;
+    j->desc.last = j->shots[j->shot_count - 1].frame;
+    return true;
+}
+
+// ---- work -------------------------------------------------------------------------------------
+
+static bool draw(const job *j, roil_effect *e, roil_sheet *s) {
+    app_progress progress, steps = {0};
+    bool done = roil_prepare(e, j->desc.cell, j->desc.cell);
+    roil_on_progress(e, app_tell_steps, &steps);
+    app_progress_begin(&progress, j->shot_count, "frames");
+    app_hear_interrupts();
+    for (size_t i = 0; done && i < j->shot_count; i++) {
+        if (app_is_interrupted(NULL)) {
+            done = err_set("stopped after %zu of %zu frames", i, j->shot_count);
+            break;
+        }
+        done = roil_render(e, j->shots[i].frame) &&
+               roil_sheet_add(s, j->shots[i].cell, j->shots[i].weight);
+        if (done) app_progress_step(&progress, i + 1);
+    }
+    app_progress_end(&progress);
+    return done;
+}
+
+static bool export_all(job *j, roil_effect *e) {
+    if (!app_can_write(j->output)) return false;
+    roil_sheet *s = roil_sheet_create(e, &j->desc);
+    bool done = s && draw(j, e, s) && roil_sheet_save(s, j->output, &j->options);
+    if (done) {
+        app_warn_of_trouble(e);
+        printf("wrote %s: %u cells at %.4g a second\n", roil_sheet_summary(s), j->options.count,
+               j->options.fps);
+    }
+    roil_sheet_free(s);
+    return done;
+}
+
+static int export_cells(job *j) {
+    roil_desc desc = app_device_desc(&j->device);
+    app_progress files = {0};
+    desc.loading = app_tell_files;
+    desc.user = &files;
+    roil *r = roil_create(&desc);
+    bool collected = r && app_collect_settings(&j->settings, r, j->file, NULL);
+    roil_effect *e = collected ? roil_load(r, j->file, j->settings.all, j->settings.count) : NULL;
+    int status = APP_DONE;
+    if (!e)
+        status = app_fail_input();
+    else if (!plan(j, e))
+        status = app_fail(APP_BAD_USAGE, "export: %s", roil_error());
+    else if (!export_all(j, e))
+        status = app_fail_input();
+    roil_unload(e);
+    return app_close(r, status);
+}
+
+int export_sheet(int argc, const char **argv) {
+    job j = {.frames.step = 1, .cell = 256, .gutter = 4};
+    poptContext context;
+    int status = sheet_parse(&j, argc, argv, &context)
+                     ? export_cells(&j)
+                     : app_fail(APP_BAD_USAGE, "export: %s", roil_error());
+    poptFreeContext(context);
+    mem_free(j.shots);
+    app_free_frames(&j.frames);
+    app_free_settings(&j.settings);
+    return status;
+}

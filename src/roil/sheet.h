@@ -1,0 +1,65 @@
+// What the parts of sheets share: their maps (sheet.c), files (sheet_write.c), what engines expect
+// (sheet_engines.c), the description (sheet_json.c) and the page (sheet_page.c).
+#pragma once
+#include "media/sheet.h"
+#include "roil/roil_impl.h"
+#include <jansson.h>
+
+typedef enum sheet_map {
+    SHEET_SHOWN,
+    SHEET_SCENE,
+    SHEET_MOTION,
+    SHEET_RIGHT_TOP_BACK,
+    SHEET_LEFT_BOTTOM_FRONT,
+    SHEET_EMISSION,
+    SHEET_NORMAL,
+    SHEET_HEAT, // temperature and depth
+    SHEET_MAPS
+} sheet_map;
+
+typedef struct sheet_engine { // a row of sheet_engines.c
+    const char *name, *title;
+    float motion_right, motion_up; // signs of the red and the green channel
+    float normal_up;               // sign of the green channel
+    const char *alpha;
+    const char *steps[8]; // to take there; %s: the file's stem. NULL ends
+} sheet_engine;
+// NULL with a message that lists them. `name` NULL: the row without signs turned.
+const sheet_engine *sheet_find_engine(const char *name);
+
+struct roil_sheet {
+    roil_effect *owner;
+    effect_sheet passes;
+    bool depth, temperature; // are wanted
+    sheet maps[SHEET_MAPS];  // premultiplied; `pixels` NULL: not wanted
+    uint32_t columns, rows, cell, gutter;
+    float height;        // metres, from the lower edge of a cell to the upper
+    float distance;      // metres, from the camera's place to the plane of the pivot
+    float pivot[2];      // of a cell, 0 to 1 from the top left: where the world's origin is seen
+    float axes[3][3];    // in the world: right, up, towards the camera
+    budget_part *memory; // of the maps
+    // As written.
+    sheet_area area; // of the cell as it was rendered
+    uint32_t used;   // cells
+    json_t *files;
+    strbuf summary;
+    bool saved;
+};
+
+typedef struct sheet_file { // one that is being written: values between 0 and 1, or as they are
+    const char *suffix;     // "", "-motion"
+    const char *what;       // for the description
+    const sheet *pixels;
+    bool srgb;  // encode red, green and blue for a display
+    bool alpha; // has a meaningful fourth channel
+} sheet_file;
+// Writes what was asked for and adds it to `s->files`, whose entry it returns; NULL with a message.
+json_t *sheet_write(roil_sheet *s, const char *file, const char *format, const sheet_file *what);
+bool sheet_write_all(roil_sheet *s, const char *file, const roil_sheet_options *options,
+                     const sheet_engine *engine);
+// The description, which the caller owns.
+json_t *sheet_describe(const roil_sheet *s, const char *file, const roil_sheet_options *options,
+                       const sheet_engine *engine);
+bool sheet_write_page(const roil_sheet *s, const char *page, const char *file,
+                      const json_t *description);
+void sheet_stem(const char *file, strbuf *out); // without its extension

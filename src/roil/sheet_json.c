@@ -1,0 +1,73 @@
+// The description of a sheet: all that whoever plays it has to know.
+#include "base/error.h"
+#include "base/memory.h"
+#include "roil/sheet.h"
+#include <math.h>
+#include <string.h>
+
+static json_t *pair(double a, double b) {
+    return json_pack("[f, f]", a, b);
+}
+
+static json_t *camera(const roil_sheet *s) {
+    json_t *all = json_object();
+    static const char *const names[] = {"right", "up", "towards_camera"};
+    for (int i = 0; i < 3; i++)
+        json_object_set_new(all, names[i],
+                            json_pack("[f, f, f]", (double)s->axes[i][0], (double)s->axes[i][1],
+                                      (double)s->axes[i][2]));
+    return all;
+}
+
+static json_t *lines(const char *const *from, size_t count, const char *file) {
+    json_t *all = json_array();
+    for (size_t i = 0; i < count; i++) {
+        const char *mark = strstr(from[i], "%s");
+        strbuf line = {0};
+        if (mark)
+            strbuf_add(&line, "%.*s%s%s", (int)(mark - from[i]), from[i], path_name(file),
+                       mark + 2);
+        else
+            strbuf_add(&line, "%s", from[i]);
+        json_t *text = json_string(strbuf_text(&line)); // NULL: not UTF-8
+        json_array_append_new(all, text ? text : json_string("?"));
+        strbuf_free(&line);
+    }
+    return all;
+}
+
+json_t *sheet_describe(const roil_sheet *s, const char *file, const roil_sheet_options *options,
+                       const sheet_engine *engine) {
+    const sheet_area *a = &s->area;
+    const double width = a->right - a->left, height = a->bottom - a->top, cell = s->cell;
+    const double metres = (double)s->height / cell;
+    json_t *all = json_object();
+    json_t *name = json_string(effect_name(s->owner->effect));
+    json_object_set_new(all, "effect", name ? name : json_string("?"));
+    json_object_set_new(all, "version", json_string(roil_version()));
+    json_object_set_new(all, "grid", json_pack("[i, i]", (int)s->columns, (int)s->rows));
+    json_object_set_new(all, "order", json_string("left to right, top to bottom"));
+    json_object_set_new(all, "frames", json_integer(s->used));
+    json_object_set_new(all, "fps", json_real(options->fps));
+    if (options->loop > 0) json_object_set_new(all, "loop_seconds", json_real(options->loop));
+    json_object_set_new(all, "cell", pair(width, height));
+    json_object_set_new(all, "gutter", json_integer(s->gutter));
+    json_object_set_new(all, "size_m", pair(width * metres, height * metres));
+    json_object_set_new(all, "pivot",
+                        pair(((double)s->pivot[0] * cell - a->left) / width,
+                             ((double)s->pivot[1] * cell - a->top) / height));
+    json_object_set_new(
+        all, "crop",
+        json_pack("[i, i, i, i]", (int)a->left, (int)a->top, (int)a->right, (int)a->bottom));
+    json_object_set_new(all, "camera", camera(s));
+    json_object_set(all, "maps", s->files);
+    if (engine->name) {
+        size_t count = 0;
+        while (engine->steps[count]) count++;
+        json_object_set_new(all, "engine", json_string(engine->title));
+        json_object_set_new(all, "steps", lines(engine->steps, count, file));
+    }
+    if (options->note_count)
+        json_object_set_new(all, "notes", lines(options->notes, options->note_count, file));
+    return all;
+}

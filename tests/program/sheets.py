@@ -1,0 +1,269 @@
+"""Sheets for engines: cells in their order, sizes in metres, motion and light as they are, files as
+engines read them."""
+import base64
+import json
+import math
+import os
+import struct
+import time
+import unittest
+
+from lib import browser
+from lib.pictures import Exr, Png
+from lib.program import Case, main
+
+# A ball that goes to the right by 1 m a second. Its light is constant, so that colours are known.
+ROLLING = """
+local fx = effect { name = "rolling", fps = 10, frames = 16 }
+fx.camera = orbit { target = {5, 0, 3}, distance = 30, yaw = 0, pitch = 0 }
+fx.sky = sky { strength = 0 }
+fx.sun = sun { strength = 0 }
+local thick = param { "thick", 400, min = 0, max = 1000 }
+local ball = sphere { position = function(t) return {t, 0, 1} end, radius = 0.5, falloff = 0.02 }
+fx.output = final { march { density = ball * thick, radiance = {0.5, 0.25, 1}, steps = 256 }, tonemap = "none" }.color
+return fx
+"""
+# What a flow carries, in front of a wall that a picture would show.
+CARRIED = """
+local fx = effect { name = "carried", fps = 10, frames = 16 }
+fx.camera = orbit { target = {0, 0, 1}, distance = 6, yaw = 90, pitch = 0 }
+local lumps = worley { frequency = 2 }:advect(vec(0.5, 1, 2), { period = 1, mean = 0.5 })
+local ball = sphere { position = function(t) return {0.5 * t, t, 2 * t} end, radius = 0.5, falloff = 0.1 }
+local ground = geometry { mesh { "ground.obj" } }
+local smoke = march { density = ball * (0.5 + lumps) * 4, depth = ground.depth, steps = 32 }
+fx.output = final { over { smoke, shade { from = ground }, from = {smoke, ground} } }.color
+return fx
+"""
+LIT = """
+local fx = effect { name = "lit", fps = 10, frames = 4 }
+fx.camera = orbit { target = {0, 0, 1}, distance = 6, yaw = 30, pitch = 20 }
+fx.sun = sun { azimuth = 60, elevation = 20, strength = 3.14159265 }
+fx.sky = sky { strength = 0 }
+local lumps = worley { frequency = 1.3, octaves = 2, seed = 3 }
+local ball = sphere { position = {0.3, 0, 1}, radius = 1.2, falloff = 0.6 } * smoothstep(0.1, 0.4, lumps)
+local lit = lighting { density = ball * 6, albedo = {0.9, 0.9, 0.9}, anisotropy = 0.3, %s }
+fx.output = final { march { from = lit, steps = 48 }, tonemap = "none" }.color
+return fx
+"""
+SHORT = ["--grid", "2x2", "--cell", "64"]
+
+
+def cell(picture, columns, index, x, y, side=64):
+    column, row = index % columns, index // columns
+    at = (column * side + x) * picture.channels
+    return list(picture.rows[row * side + y][at:at + picture.channels])
+
+
+def srgb(v):
+    v = min(max(v, 0), 1)
+    return 255 * (12.92 * v if v <= 0.0031308 else 1.055 * v ** (1 / 2.4) - 0.055)
+
+
+def psnr(a, b):
+    return 10 * math.log10(255 ** 2 * len(a) / max(sum((x - y) ** 2 for x, y in zip(a, b)), 1e-9))
+
+
+def middle(picture, columns, index, side=64):
+    """Where a cell's alpha lies, in pixels, and how much of it there is."""
+    sums = [0.0, 0.0, 0.0]
+    for y in range(side):
+        for x in range(side):
+            alpha = cell(picture, columns, index, x, y, side)[3] / (2 ** picture.bits - 1)
+            for i, v in enumerate((x + 0.5, y + 0.5, 1)):
+                sums[i] += alpha * v
+    return sums[0] / sums[2], sums[1] / sums[2], sums[2]
+
+
+class Sheets(Case):
+    def export(self, effect, *options, output="fire.png"):
+        self.write("effect.lua", effect)
+        self.succeeds("export", "sheet", "effect.lua", "-o", output, *options)
+        return json.loads(self.read(os.path.splitext(output)[0] + ".json"))
+
+    def picture(self, name):
+        return Png(self.read(name))
+
+    def floats(self, name):
+        return Exr(self.read(name)).channels
+
+    def map(self, told, name):
+        return next(m for m in told["maps"] if m["map"] == name)
+
+    def test_cells_are_frames_in_order_and_metres_are_pixels(self):
+        told = self.export(ROLLING, "--frames", "1-13:4", *SHORT)
+        self.assertEqual((told["grid"], told["frames"], told["fps"], told["cell"]), ([2, 2], 4, 2.5, [64, 64]))
+        # The ball goes from x = -0.5 to 1.7 m, so the cells show 2.2 m within their gutters.
+        self.assertAlmostEqual(told["size_m"][0], 2.2 * 64 / 56, 2)
+        sheet = self.picture("fire.png")
+        self.assertEqual((sheet.width, sheet.height, sheet.channels), (128, 128, 4))
+        for i in range(4):
+            x, y, area = middle(sheet, 2, i)
+            metre = 64 / told["size_m"][0]
+            self.assertAlmostEqual(x, told["pivot"][0] * 64 + 0.4 * i * metre, delta=0.3)
+            self.assertAlmostEqual(y, told["pivot"][1] * 64 - metre, delta=0.3)
+            self.assertAlmostEqual(area, math.pi * (0.5 * metre) ** 2, delta=0.06 * area)
+
+    def test_alpha_and_colour_are_the_mediums(self):
+        self.export(ROLLING, "--frames", "1", "--set", "thick=2", "--light", "scene", *SHORT, output="fire.exr")
+        told = self.floats("fire.exr")
+        at = max(range(len(told["A"])), key=lambda i: told["A"][i])
+        self.assertAlmostEqual(told["A"][at], 1 - math.exp(-2), delta=0.02)  # through a metre
+        for channel, light in zip("RGB", (0.5, 0.25, 1)):
+            self.assertAlmostEqual(told[channel][at], light * told["A"][at], delta=0.01)
+
+    def test_straight_colours_go_on_where_nothing_is(self):
+        told = self.export(ROLLING, "--frames", "1", "--alpha", "both", *SHORT)
+        self.assertEqual([m["alpha"] for m in told["maps"]], ["premultiplied", "straight"])
+        plain, straight = self.picture("fire.png"), self.picture("fire-straight.png")
+        self.assertEqual(cell(plain, 2, 0, 1, 1), [0, 0, 0, 0])
+        beside = cell(straight, 2, 0, 1, 1)
+        self.assertEqual(beside[3], 0)
+        for c, light in enumerate((188, 137, 255)):  # the same as inside, sRGB
+            self.assertAlmostEqual(beside[c], light, delta=2)
+        self.assertEqual(cell(straight, 2, 3, 32, 32), [0, 0, 0, 0])  # a cell without any
+
+    def test_formats_hold_the_same(self):
+        self.export(ROLLING, "--frames", "1", *SHORT)
+        wanted = self.picture("fire.png")
+        self.export(ROLLING, "--frames", "1", "--format", "png16", *SHORT)
+        fine = self.picture("fire.png")
+        self.assertEqual((wanted.bits, fine.bits), (8, 16))
+        self.export(ROLLING, "--frames", "1", *SHORT, output="fire.tga")
+        tga = self.read("fire.tga")
+        self.assertEqual(struct.unpack("<HHBB", tga[12:18]), (128, 128, 32, 0x28))
+        for x, y in ((1, 1), (20, 30), (22, 36)):
+            eight, sixteen = cell(wanted, 2, 0, x, y), cell(fine, 2, 0, x, y)
+            b, g, r, a = tga[18 + 4 * (y * 128 + x):][:4]
+            self.assertEqual(eight, [r, g, b, a])
+            for c in range(4):
+                self.assertAlmostEqual(eight[c], sixteen[c] / 257, delta=0.51)
+
+    def test_cropped_cells_keep_their_pivot(self):
+        told = self.export(ROLLING, "--frames", "1,2", "--camera", "--crop", *SHORT)
+        left, top, right, bottom = told["crop"]
+        self.assertEqual(told["cell"], [right - left, bottom - top])
+        self.assertLess(right - left, 32)
+        self.assertEqual((right - left) % 4, 0)
+        sheet = self.picture("fire.png")
+        self.assertEqual((sheet.width, sheet.height), (2 * (right - left), 2 * (bottom - top)))
+        self.assertAlmostEqual(told["pivot"][0] * (right - left) + left, 32 - 5 * 64 / (told["size_m"][0] / (right - left) * 64), delta=0.1)
+
+    def test_motion_is_that_of_the_medium(self):
+        told = self.export(CARRIED, "--frames", "1,3", "--maps", "color,motion", *SHORT, output="fire.exr")
+        motion = self.floats("fire-motion.exr")
+        # The camera looks along -x: +y is to the right. 0.2 s from cell to cell.
+        for i in (0, 50 * 128 + 20):
+            self.assertAlmostEqual(motion["R"][i], 1 * 0.2 / told["size_m"][0], delta=1e-3)
+            self.assertAlmostEqual(motion["G"][i], 2 * 0.2 / told["size_m"][1], delta=1e-3)
+        for engine, signs in (("unity", (1, 1)), ("unreal", (1, -1)), ("godot", (1, -1)), ("labs", (-1, 1))):
+            told = self.export(CARRIED, "--frames", "1,3", "--maps", "motion", "--for", engine, *SHORT)
+            entry = self.map(told, "motion")
+            seen = cell(self.picture("fire-motion.png"), 2, 0, 20, 50)
+            for c, wanted in enumerate((1, 2)):
+                value = (seen[c] / 255 * 2 - 1) * entry["scale"]
+                self.assertAlmostEqual(value, signs[c] * wanted * 0.2 / told["size_m"][0], delta=0.01 * entry["scale"])
+            self.assertIn("steps", told)
+        self.fails(1, ["nothing says how the medium of pass 'march' moves"], "export", "sheet",
+                   self.write("still.lua", ROLLING), "-o", "still.png", "--maps", "motion")
+
+    def test_meshes_hide_nothing_of_it(self):
+        told = self.export(CARRIED, "--frames", "1", *SHORT)
+        x, y, area = middle(self.picture("fire.png"), 2, 0)  # half of it lies below the ground
+        self.assertAlmostEqual(y, told["pivot"][1] * 64, delta=1.5)
+        self.assertGreater(area, 1000)
+
+    def test_six_lights_are_those_of_six_pictures(self):
+        told = self.export(LIT % "", "--frames", "1", "--grid", "1x1", "--cell", "48", "--maps", "six-way", output="six.exr")
+        rigs = self.floats("six-right-top-back.exr"), self.floats("six-left-bottom-front.exr")
+        sides = [(0, "R", "right", 1), (0, "G", "up", 1), (0, "B", "towards_camera", -1),
+                 (1, "R", "right", -1), (1, "G", "up", -1), (1, "B", "towards_camera", 1)]
+        for rig, channel, axis, sign in sides:
+            light = [sign * (axis == name) for name in ("right", "up", "towards_camera")]
+            self.export(LIT % "", "--frames", "1", "--grid", "1x1", "--cell", "48", "--light", "scene",
+                        *self.turned(told, light), output="one.exr")
+            wanted, seen = self.floats("one.exr")["R"], rigs[rig][channel]
+            self.assertGreater(max(wanted), 0.1)
+            self.assertLess(max(abs(a - b) for a, b in zip(wanted, seen)), 2e-3, (axis, sign))
+
+    def test_emission_is_beside_the_six_lights(self):
+        self.export(LIT % "emission = {0.4, 0.2, 0.1}", "--frames", "1", "--grid", "1x1", "--cell", "32", "--maps",
+                    "color,six-way", "--light", "scene", "--set", "sun.strength=0", output="six.exr")
+        dark, glow = self.floats("six-right-top-back.exr"), self.floats("six-emission.exr")
+        front = self.floats("six-left-bottom-front.exr")
+        at = max(range(len(glow["R"])), key=lambda i: glow["R"][i])
+        self.assertGreater(glow["R"][at], 0.05)
+        self.assertAlmostEqual(glow["R"][at] / glow["G"][at], 2, delta=0.02)
+        lit = 0.2126 * glow["R"][at] + 0.7152 * glow["G"][at] + 0.0722 * glow["B"][at]
+        self.assertAlmostEqual(front["A"][at], lit, delta=2e-3)
+        self.assertGreater(dark["A"][at], 0.2)
+
+    def turned(self, told, light):
+        """Settings by which the sun shines from `light`: right, up, towards the camera."""
+        axes = [told["camera"][name] for name in ("right", "up", "towards_camera")]
+        x, y, z = (sum(l * axis[i] for l, axis in zip(light, axes)) for i in range(3))
+        return ["--set", f"sun.azimuth={math.degrees(math.atan2(y, x))}", "--set", f"sun.elevation={math.degrees(math.asin(z))}"]
+
+    def drawn(self, page, **state):
+        """Red, green and blue of what the page draws."""
+        setting = "".join(f"sheet.state.{name} = {json.dumps(value)};" for name, value in state.items())
+        data = page.value(f"sheet.play(false); {setting} sheet.draw(); sheet.canvas.toDataURL('image/png')")
+        picture = Png(base64.b64decode(data.split(",")[1]))
+        return [picture.channel(c) for c in range(3)]
+
+    @unittest.skipUnless(browser.find(), "no Chromium (apt-get install chromium): the page is not tested")
+    def test_the_page_draws_what_the_effect_would(self):
+        small = ["--grid", "2x1", "--cell", "48"]
+        told = self.export(LIT % "emission = {0.04, 0.02, 0.01}", "--frames", "1,2", *small, "--maps", "color,six-way",
+                           "--page", "lit.html")
+        self.export(CARRIED, "--frames", "4,8", *small, "--maps", "color,motion", "--page", "carried.html", output="moved.png")
+        self.export(CARRIED, "--frames", "4,6,8", "--grid", "3x1", "--cell", "48", output="truth.png")
+        page = browser.Browser()
+        self.addCleanup(page.close)
+        self.load(page, "lit.html")
+        for light, least in (((1, 0, 0), 45), ((0, 0, -1), 45), ((0.6, 0.64, 0.48), 30)):
+            seen = self.drawn(page, time=0, view="light", light=light, background=[0, 0, 0])
+            self.export(LIT % "emission = {0.04, 0.02, 0.01}", "--frames", "1", "--grid", "1x1", "--cell", "48", "--light", "scene",
+                        *self.turned(told, light), output="one.exr")
+            for c, channel in enumerate("RGB"):
+                wanted = [srgb(v) for v in self.floats("one.exr")[channel]]
+                self.assertGreater(max(wanted), 80)
+                self.assertGreater(psnr(wanted, seen[c]), least, (light, channel))
+        self.load(page, "carried.html")
+        truth = Png(self.read("truth.png"))
+        wanted = [cell(truth, 3, 1, x, y, 48)[0] for y in range(48) for x in range(48)]
+        found = {}
+        for between in "vectors", "fade", "none":
+            found[between] = psnr(wanted, self.drawn(page, time=0.2, view="color", between=between, background=[0, 0, 0])[0])
+        self.assertGreater(found["vectors"], found["fade"] + 2, found)
+        self.assertGreater(found["fade"], found["none"], found)
+        self.assertEqual([a for a in page.requests if not a.endswith("carried.html")], [])  # it needs nothing else
+
+    def load(self, page, name):
+        page.open(self.path(name), 1000)
+        until = time.monotonic() + 60
+        while not page.value("!!window.sheet"):
+            self.assertLess(time.monotonic(), until, page.complaints)
+
+    def test_mistakes_are_told(self):
+        self.write("effect.lua", ROLLING)
+        for says, *options in (
+                ["--grid '8'", "--grid", "8"],
+                ["map 'colour'; did you mean 'color'?", "--maps", "colour"],
+                ["engine 'unty'; did you mean 'unity'?", "--for", "unty"],
+                ["light 'dark'", "--light", "dark"],
+                ["alpha 'none'", "--alpha", "none"],
+                ["format 'gif'", "--format", "gif"],
+                ["no pass march is called 'smoke'; there are: march", "--source", "smoke"],
+                ["16 frames in 4 cells", "--frames", "1-16", "--grid", "2x2"],
+                ["a gutter of 40 pixels", "--cell", "64", "--gutter", "40"],
+                ["a loop of 9 s", "--loop", "9"]):
+            message = self.fails(2 if options[0] in ("--grid", "--frames", "--loop") else 1, says, "export", "sheet",
+                                 "effect.lua", "-o", "fire.png", *options)
+            self.assertFalse(os.path.exists(self.path("fire.json")), message)
+        self.fails(1, "a page needs a .png", "export", "sheet", "effect.lua", "-o", "fire.exr", "--page", "fire.html")
+        self.fails(2, "accepted: .png, .exr, .tga", "export", "sheet", "effect.lua", "-o", "fire.jpg")
+        self.fails(2, "which effect?", "export", "sheet", "-o", "fire.png")
+
+
+if __name__ == "__main__":
+    main()
