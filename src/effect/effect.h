@@ -167,10 +167,12 @@ typedef struct effect_sheet {
     graph_image images[EFFECT_MAPS]; // zero: not wanted; the caller must keep them
     box3 box;                        // that the medium can be in, in these frames (m)
     const char *source;              // label of the march
+    bool moves; // EFFECT_MAP_MOTION is known: a grid with a velocity is in the density, or what
+                // `advect` carries; else the image is zero
 } effect_sheet;
 // Adds passes that see the medium of a march alone: no mesh, sky or sprite shows in it or hides
 // it, though meshes shadow it in EFFECT_MAP_COLOR. Call it as effect_add_volume. False with a
-// message, as where nothing tells a velocity or a temperature.
+// message, as where nothing tells a temperature.
 bool effect_add_sheet(effect *e, const effect_sheet_desc *desc, effect_sheet *out);
 
 // Makes the effect draw only kept images and no pictures. Call it before the effect is built.

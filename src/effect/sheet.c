@@ -56,12 +56,10 @@ static bool give_temperature(effect *e, const pass *march, pass *maps) {
                          e->file, pass_label(march));
 }
 
-static bool give_velocity(effect *e, const pass *march, pass *maps) {
+static bool give_velocity(effect *e, const pass *march, pass *maps, bool *moves) {
     const field *found = field_velocity(&e->memory, field_of(march, "density"));
-    return found ? pass_set_field(maps, "velocity", found)
-                 : err_set("%s: nothing says how the medium of pass '%s' moves: no grid with a "
-                           "velocity is in its density, and nothing that `advect` carries",
-                           e->file, pass_label(march));
+    *moves = found;
+    return !found || pass_set_field(maps, "velocity", found);
 }
 
 // ---- passes -----------------------------------------------------------------------------------
@@ -133,7 +131,8 @@ bool effect_add_sheet(effect *e, const effect_sheet_desc *desc, effect_sheet *ou
     maps = effect_add_pass(e, "maps", NULL, NULL);
     if (!maps) return false;
     pass_add_source(maps, march);
-    if (!take_light(march, maps) || (wanted[EFFECT_MAP_MOTION] && !give_velocity(e, march, maps)) ||
+    if (!take_light(march, maps) ||
+        (wanted[EFFECT_MAP_MOTION] && !give_velocity(e, march, maps, &out->moves)) ||
         (desc->temperature && !give_temperature(e, march, maps)) ||
         (wanted[EFFECT_MAP_NORMAL] && !pass_set_option(maps, "normals", "on")) ||
         (wanted[EFFECT_MAP_RIGHT_TOP_BACK] && !add_rig(e, march, maps, "right_top_back", "a")) ||
@@ -143,6 +142,7 @@ bool effect_add_sheet(effect *e, const effect_sheet_desc *desc, effect_sheet *ou
         !pass_declare(maps))
         return false;
     for (int i = 0; i < EFFECT_MAPS; i++)
-        if (wanted[i] && names[i]) out->images[i] = pass_output(maps, names[i]);
+        if (wanted[i] && names[i] && (i != EFFECT_MAP_MOTION || out->moves))
+            out->images[i] = pass_output(maps, names[i]);
     return !wanted[EFFECT_MAP_SHOWN] || add_final(e, maps, &out->images[EFFECT_MAP_SHOWN]);
 }

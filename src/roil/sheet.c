@@ -4,6 +4,7 @@
 #include "base/budget.h"
 #include "base/error.h"
 #include "base/memory.h"
+#include "media/optical_flow.h"
 #include <math.h>
 #include <string.h>
 
@@ -180,6 +181,16 @@ static bool set_camera(roil_sheet *s, bool keep) {
 
 // ---- from begin to end ------------------------------------------------------------------------
 
+// Where nothing says how the medium moves, its pictures may.
+static bool can_estimate(const roil_sheet *s, const wish *w) {
+    if (w->color && optical_flow_load()) return true;
+    if (!w->color) err_set("motion is estimated from the colours: add color to the maps");
+    return err_prefix(
+        "nothing says how the medium of pass '%s' moves: no grid with a velocity is in its "
+        "density, and nothing that `advect` carries; ",
+        s->passes.source);
+}
+
 static bool add_passes(roil_sheet *s, const roil_sheet_desc *desc, const wish *w) {
     effect *e = s->owner->effect;
     effect_sheet_desc wanted = {.source = desc->source,
@@ -188,9 +199,11 @@ static bool add_passes(roil_sheet *s, const roil_sheet_desc *desc, const wish *w
                                 .last = desc->last};
     for (int i = 0; i < SHEET_MAPS; i++) wanted.wanted[sources[i]] = w->maps[i];
     if (!effect_add_sheet(e, &wanted, &s->passes)) return false;
+    if (w->maps[SHEET_MOTION] && !s->passes.moves && !can_estimate(s, w)) return false;
     for (int i = 0; i < SHEET_MAPS; i++) {
         graph_image image = s->passes.images[sources[i]];
-        if (w->maps[i] && !roil_keep(s->owner, graph_get_desc(effect_graph(e), image)->name))
+        if (w->maps[i] && image.id &&
+            !roil_keep(s->owner, graph_get_desc(effect_graph(e), image)->name))
             return false;
     }
     effect_skip_pictures(e);
@@ -241,7 +254,9 @@ bool roil_sheet_add(roil_sheet *s, uint32_t cell, double weight) {
     if (cell >= s->columns * s->rows)
         return err_set("cell %u; the sheet has %u", cell, s->columns * s->rows);
     for (int i = 0; i < SHEET_MAPS; i++)
-        if (s->maps[i].pixels && !add_map(s, (sheet_map)i, cell, (float)weight)) return false;
+        if (s->maps[i].pixels && s->passes.images[sources[i]].id &&
+            !add_map(s, (sheet_map)i, cell, (float)weight))
+            return false;
     return true;
 }
 
@@ -252,6 +267,9 @@ bool roil_sheet_save(roil_sheet *s, const char *file, const roil_sheet_options *
     s->saved = true;
     s->files = json_array();
     s->used = options->count ? options->count : s->columns * s->rows;
+    if (s->maps[SHEET_MOTION].pixels && !s->passes.moves &&
+        !sheet_find_flow(s, s->used, options->loop > 0, options->fps))
+        return false;
     if (!sheet_write_all(s, file, options, engine)) return false;
     json_t *description = sheet_describe(s, file, options, engine);
     strbuf path = {0};

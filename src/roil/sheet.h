@@ -57,6 +57,8 @@ typedef struct sheet_file { // one that is being written: values between 0 and 1
 json_t *sheet_write(roil_sheet *s, const char *file, const char *format, const sheet_file *what);
 bool sheet_write_all(roil_sheet *s, const char *file, const roil_sheet_options *options,
                      const sheet_engine *engine);
+// Fills SHEET_MOTION from the colours of the first `count` cells.
+bool sheet_find_flow(roil_sheet *s, uint32_t count, bool loops, double fps);
 // The description, which the caller owns.
 json_t *sheet_describe(const roil_sheet *s, const char *file, const roil_sheet_options *options,
                        const sheet_engine *engine);

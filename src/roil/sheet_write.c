@@ -201,6 +201,9 @@ static bool write_motion(const job *j) {
     if (entry) {
         set_real(entry, "scale", scale);
         json_object_set_new(entry, "unit", json_string("cells a frame of the sheet"));
+        json_object_set_new(
+            entry, "from",
+            json_string(j->s->passes.moves ? "the medium" : "optical flow of the colours"));
         json_object_set_new(entry, "red",
                             json_string(j->engine->motion_right > 0 ? "right" : "left"));
         json_object_set_new(entry, "green", json_string(j->engine->motion_up > 0 ? "up" : "down"));

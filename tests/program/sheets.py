@@ -10,7 +10,9 @@ import unittest
 
 from lib import browser
 from lib.pictures import Exr, Png
-from lib.program import Case, main
+from lib.program import BINARY, Case, main
+
+FLOW = os.path.join(BINARY, "libroil-flow.so")
 
 # A ball that goes to the right by 1 m a second. Its light is constant, so that colours are known.
 ROLLING = """
@@ -163,8 +165,22 @@ class Sheets(Case):
                 value = (seen[c] / 255 * 2 - 1) * entry["scale"]
                 self.assertAlmostEqual(value, signs[c] * wanted * 0.2 / told["size_m"][0], delta=0.01 * entry["scale"])
             self.assertIn("steps", told)
-        self.fails(1, ["nothing says how the medium of pass 'march' moves"], "export", "sheet",
+        self.fails(1, ["nothing says how the medium of pass 'march' moves", "add color to the maps"], "export", "sheet",
                    self.write("still.lua", ROLLING), "-o", "still.png", "--maps", "motion")
+
+    @unittest.skipUnless(os.path.exists(FLOW), "built without OpenCV (apt-get install libopencv-video-dev)")
+    def test_motion_is_estimated_where_nothing_says_it(self):
+        spotted = ROLLING.replace("ball * thick, radiance = {0.5, 0.25, 1}", "ball * thick, radiance = {1, 1, 1} * "
+                                  "worley { frequency = 6, drift = {-1, 0, 0} }")
+        told = self.export(spotted, "--frames", "3-6", "--maps", "color,motion", *SHORT, output="fire.exr")
+        self.assertEqual(self.map(told, "motion")["from"], "optical flow of the colours")
+        colors, motion = self.floats("fire.exr"), self.floats("fire-motion.exr")
+        weight = sum(colors["A"])
+        right = sum(a * v for a, v in zip(colors["A"], motion["R"])) / weight
+        up = sum(a * v for a, v in zip(colors["A"], motion["G"])) / weight
+        wanted = 0.1 / told["size_m"][0]
+        self.assertAlmostEqual(right, wanted, delta=0.15 * wanted)
+        self.assertAlmostEqual(up, 0, delta=0.15 * wanted)
 
     def test_meshes_hide_nothing_of_it(self):
         told = self.export(CARRIED, "--frames", "1", *SHORT)

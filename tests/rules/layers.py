@@ -19,6 +19,7 @@ HOMES = [
                                  "media/vdb_file.hpp")),
     (r"blosc", "media/pack.c"),
     (r"assimp/|meshoptimizer\.h|png\.h|OpenEXR/|openexr|libav|libsw|Imf", "media/"),
+    (r"opencv2/", "media/optical/optical_flow.cpp"),
     (r"imgui", ("ui/ui.cpp", "ui/ui_canvas.cpp", "ui/ui_widgets.cpp", "ui/ui_state.hpp")),
     (r"GLFW/", ("app/", "ui/")),
     (r"fontconfig/", "ui/"),
@@ -26,7 +27,7 @@ HOMES = [
     (r"xxhash\.h", "base/"),
 ]
 CPP = ["src/media/vdb.cpp", "src/media/vdb_blocks.cpp", "src/media/vdb_write.cpp",
-       "src/ui/ui.cpp", "src/ui/ui_canvas.cpp", "src/ui/ui_widgets.cpp"]
+       "src/media/optical/optical_flow.cpp", "src/ui/ui.cpp", "src/ui/ui_canvas.cpp", "src/ui/ui_widgets.cpp"]
 PUBLIC = ("roil.h", "roil_slices.h", "roil_space.h", "roil_graph.h")  # of the layer roil
 INCLUDE = re.compile(r'^\s*#\s*(?:include|import)\b\s*(?:"([^"]*)"|<([^>]*)>|(.*))')
 
