@@ -330,8 +330,10 @@ roil_made *roil_read_made(const char *file); // of a stranger, too; NULL with a 
 void roil_free_made(roil_made *m);           // NULL is allowed
 
 typedef struct roil_video roil_video;
-// Begins an .mp4 file of the effect's pictures in their size now.
-roil_video *roil_video_create(roil_effect *e, const char *file, double fps);
+// Begins a film of the effect's pictures in their size now: .mp4, .webm (VP9), .mov (ProRes 4444),
+// .gif or .apng. `alpha`: straight, as these formats define it; an .mp4 keeps none.
+roil_video *roil_video_create(roil_effect *e, const char *file, double fps, bool alpha);
+bool roil_is_film(const char *file);    // its extension is one of these
 bool roil_video_add(roil_video *v);     // adds the last frame; another thread encodes it
 bool roil_video_finish(roil_video *v);  // completes the file and frees `v`
 void roil_video_abandon(roil_video *v); // frees `v` and leaves no file; NULL is allowed

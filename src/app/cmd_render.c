@@ -1,4 +1,4 @@
-// roil render EFFECT.lua ...: frames to PNG, EXR or MP4.
+// roil render EFFECT.lua ...: frames to pictures and films.
 #include "app/app.h"
 #include "app/device_options.h"
 #include "base/arena.h"
@@ -61,9 +61,10 @@ enum {
 
 static bool add_output(job *j, const char *pattern, const char *image) {
     const char *extension = path_extension(pattern);
-    bool video = strcmp(extension, "mp4") == 0;
+    bool video = roil_is_film(pattern);
     if (strcmp(extension, "png") != 0 && strcmp(extension, "exr") != 0 && (!video || image))
-        return err_set("output '%s'; accepted: .png, .exr%s", pattern, image ? "" : ", .mp4");
+        return err_set("output '%s'; accepted: .png, .exr%s", pattern,
+                       image ? "" : ", .mp4, .webm, .mov, .gif, .apng");
     if (!app_check_pattern(pattern)) return false;
     MEM_RESERVE(j->outputs, j->output_count + 1, j->output_capacity);
     j->outputs[j->output_count++] = (output){.pattern = pattern, .image = image};
@@ -138,7 +139,8 @@ static bool render_check_parts(const job *j) {
 static bool render_parse(job *j, int argc, const char **argv, poptContext *context) {
     const struct poptOption options[] = {
         {"output", 'o', POPT_ARG_STRING, NULL, OPTION_OUTPUT,
-         "PNG or EXR file or pattern, or MP4; may be given several times (default: "
+         "PNG or EXR file or pattern, or a film (.mp4, .webm, .mov, .gif, .apng); may be given "
+         "several times (default: "
          "out/NAME/%04d.png)",
          "FILE"},
         {"frames", 'f', POPT_ARG_STRING, &j->frames_text, 0,
@@ -180,7 +182,8 @@ static bool render_parse(job *j, int argc, const char **argv, poptContext *conte
         {"fps", '\0', POPT_ARG_DOUBLE, &j->fps, 0,
          "frames per second of the video (default: the effect's)", "FPS"},
         {"alpha", '\0', POPT_ARG_NONE, &j->alpha, 0,
-         "keep straight alpha in PNG files: bright light with little alpha is clipped at white",
+         "keep straight alpha in PNG files and films: bright light with little alpha is clipped at "
+         "white",
          NULL},
         {"premultiplied", '\0', POPT_ARG_NONE, &j->premultiplied, 0,
          "keep alpha in PNG files, with colours as they appear on black: nothing is clipped", NULL},
@@ -274,7 +277,7 @@ static bool render_complete(job *j, roil_effect *e) {
     }
     for (size_t i = 0; i < j->output_count; i++) {
         const output *o = &j->outputs[i];
-        bool one_file = !app_has_number(o->pattern) && !str_ends_with(o->pattern, ".mp4");
+        bool one_file = !app_has_number(o->pattern) && !roil_is_film(o->pattern);
         if (one_file && j->frames.count > 1)
             return err_set("output '%s' would be overwritten by each of %zu frames; name it like "
                            "out/%%04d.png",
@@ -330,12 +333,12 @@ static bool open_outputs(job *j, roil_effect *e) {
     if (!j->frames.count) return true;
     for (size_t i = 0; i < j->output_count; i++) {
         output *o = &j->outputs[i];
-        bool film = str_ends_with(o->pattern, ".mp4");
+        bool film = roil_is_film(o->pattern);
         char file[PATH_CAP];
         if (!name_file(o, j->frames.numbers[0], file)) return false;
         if (!film && !app_can_write(file)) return false;
         if (!film) continue;
-        o->video = roil_video_create(e, o->pattern, j->fps);
+        o->video = roil_video_create(e, o->pattern, j->fps, j->alpha);
         if (!o->video) return false;
     }
     char state[PATH_CAP];

@@ -21,7 +21,7 @@ static const struct {
     int (*run)(int argc, const char **argv);
     const char *help;
 } commands[] = {
-    {"render", cmd_render, "render frames of an effect to PNG, EXR or MP4"},
+    {"render", cmd_render, "render frames of an effect to pictures and films"},
     {"live", cmd_live, "open a window in which an effect is tuned while it runs"},
     {"new", cmd_new, "make a folder with an effect to begin with, and all that it reads"},
     {"check", cmd_check, "load, compile and validate effects; render nothing"},

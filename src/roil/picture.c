@@ -419,6 +419,7 @@ bool roil_writer_finish(roil_writer *w) {
 struct roil_video {
     roil_effect *effect;
     video *video;
+    bool alpha;
     jobs *frames; // encoded one after the other
     uint8_t *pixels;
     double fps, first, second, last; // frames
@@ -436,13 +437,18 @@ static void video_free(roil_video *v) {
     mem_free(v);
 }
 
-roil_video *roil_video_create(roil_effect *e, const char *file, double fps) {
+bool roil_is_film(const char *file) {
+    return video_is_film(file);
+}
+
+roil_video *roil_video_create(roil_effect *e, const char *file, double fps, bool alpha) {
     if (!file_make_parent_folders(file)) return NULL;
-    video *out = video_create(file, e->width, e->height, fps);
+    video *out = video_create(file, e->width, e->height, fps, alpha);
     if (!out) return NULL;
     roil_video *v = mem_alloc(sizeof *v);
     roil_srgb_fine_table(); // filled before another thread reads it
     *v = (roil_video){.effect = e,
+                      .alpha = alpha,
                       .video = out,
                       .frames = jobs_create(1, 1 + QUEUED),
                       .pixels = mem_alloc((size_t)e->width * e->height * 4),
@@ -456,7 +462,7 @@ roil_video *roil_video_create(roil_effect *e, const char *file, double fps) {
 static bool encode_frame(void *user) {
     const video_frame *frame = user;
     linear_image image = expand_all(&frame->raw);
-    encode8_dithered(&image, false, 4, frame->of->pixels);
+    encode8_dithered(&image, frame->of->alpha ? STRAIGHT : OPAQUE, 4, frame->of->pixels);
     mem_free(image.pixels);
     return video_add(frame->of->video, frame->of->pixels);
 }

@@ -204,6 +204,38 @@ class Video(Case):
         self.assertEqual(json.loads(told.stdout)["streams"],
                          [{"width": 96, "height": 54, "r_frame_rate": "24/1", "nb_read_frames": "7"}])
 
+    def decoded(self, name, *decoder):
+        """Red, green, blue and alpha of every pixel of a film's first frame, and its size."""
+        told = subprocess.run(["ffprobe", "-v", "error", "-show_entries", "stream=width,height", "-of", "csv=p=0", self.path(name)],
+                              stdout=subprocess.PIPE, check=True, text=True)
+        data = subprocess.run(["ffmpeg", "-v", "error", *decoder, "-i", self.path(name), "-frames:v", "1", "-f", "rawvideo",
+                               "-pix_fmt", "rgba", "-"], stdout=subprocess.PIPE, check=True)
+        return data.stdout, [int(v) for v in told.stdout.split(",")[:2]]
+
+    @unittest.skipUnless(shutil.which("ffmpeg"), "ffmpeg is not installed")
+    def test_films_keep_alpha(self):
+        self.write("effect.lua", VOLUME % "2 * sphere { position = {1, 1, 1}, radius = 0.7, falloff = 0.02 }")
+        films = [part for kind in ("webm", "mov", "gif", "apng") for part in ("-o", "film." + kind)]
+        self.succeeds("render", "effect.lua", "--frames", "1-3", "--alpha", "-s", "97x55", *films, "-o", "%d.png",
+                      "--set", "march.albedo=1,1,1", "--set", "sun.strength=20", "--set", "march.shadow_steps=0")
+        wanted = Png(self.read("1.png"))
+        opacity = wanted.channel(3)
+        self.assertGreater(max(opacity), 200)
+        for name, decoder, size, slack in (("film.webm", ["-c:v", "libvpx-vp9"], [98, 56], 6), ("film.mov", [], [97, 55], 2),
+                                           ("film.apng", [], [97, 55], 0), ("film.gif", [], [97, 55], 40)):
+            data, seen = self.decoded(name, *decoder)
+            self.assertEqual(seen, size, name)
+            at = [4 * (y * size[0] + x) for y in range(55) for x in range(97)]
+            apart = sum(abs(data[i + 3] - a) for i, a in zip(at, opacity)) / len(at)
+            self.assertLessEqual(apart, slack, name)
+            middle = 4 * (27 * size[0] + 48)
+            for c in range(3):
+                mean = sum(data[middle + c + 4 * (x + y * size[0])] for x in range(-4, 4) for y in range(-4, 4)) / 64
+                self.assertAlmostEqual(mean, wanted.rows[27][48 * 4 + c], delta=12, msg=(name, c))
+        self.assertEqual(subprocess.run(["ffprobe", "-v", "error", "-show_entries", "stream_tags=alpha_mode", "-of", "csv=p=0",
+                                         self.path("film.webm")], stdout=subprocess.PIPE, check=True, text=True).stdout.strip(), "1")
+        self.fails(1, "keeps no alpha; .webm, .mov", "render", "effect.lua", "--frames", "1", "--alpha", "-o", "film.mp4", *SMALL)
+
     def test_unfinished_video_is_removed(self):
         effect = PUFF.replace("return fx", """
 fx.update = function(t) if t > 0.1 then error("too late") end end

@@ -89,8 +89,8 @@ class Usage(Case):
                            "--size", size)
 
     def test_bad_output(self):
-        self.fails(2, "accepted: .png, .exr, .mp4", "render", "puff.lua", "-o", "out.jpg")
-        self.fails(2, "accepted: .png, .exr, .mp4", "render", "puff.lua", "-o", "out")
+        self.fails(2, "accepted: .png, .exr, .mp4, .webm", "render", "puff.lua", "-o", "out.jpg")
+        self.fails(2, "accepted: .png, .exr, .mp4, .webm", "render", "puff.lua", "-o", "out")
         for pattern in ("%s.png", "%d%d.png", "%n.png", "%04x.png", "%.png", "%99999d.png", "%*d.png",
                         "%-4d.png"):
             with self.subTest(pattern):

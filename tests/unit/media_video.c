@@ -15,7 +15,7 @@ static uint8_t *picture(uint32_t width, uint32_t height, const uint8_t rgb[3]) {
 
 static bool write_film(const char *path, uint32_t width, uint32_t height) {
     static const uint8_t ORANGE[3] = {240, 120, 20};
-    video *v = video_create(path, width, height, 24.0);
+    video *v = video_create(path, width, height, 24.0, false);
     if (!v) return false;
     uint8_t *rgba = picture(width, height, ORANGE);
     bool good = true;
@@ -111,10 +111,10 @@ static void the_index_stands_in_front(void **state) {
 static void an_abandoned_or_empty_film_leaves_nothing(void **state) {
     (void)state;
     video_abandon(NULL);
-    video *v = video_create(test_path("a.mp4"), 32, 32, 30.0);
+    video *v = video_create(test_path("a.mp4"), 32, 32, 30.0, false);
     assert_non_null(v);
     video_abandon(v);
-    v = video_create(test_path("a.mp4"), 32, 32, 30.0);
+    v = video_create(test_path("a.mp4"), 32, 32, 30.0, false);
     assert_false(video_finish(v));
     assert_message("at least one frame");
     assert_int_equal(test_count_files(), 0);
@@ -122,18 +122,18 @@ static void an_abandoned_or_empty_film_leaves_nothing(void **state) {
 
 static void an_unwritable_path_is_an_error(void **state) {
     (void)state;
-    assert_null(video_create(test_path("no/such/folder.mp4"), 32, 32, 24.0));
+    assert_null(video_create(test_path("no/such/folder.mp4"), 32, 32, 24.0, false));
     assert_message("folder.mp4");
-    assert_null(video_create(test_folder, 32, 32, 24.0));
+    assert_null(video_create(test_folder, 32, 32, 24.0, false));
     assert_message("is a folder");
-    assert_null(video_create(test_path("a.mp4"), 0, 32, 24.0));
-    assert_null(video_create(test_path("a.mp4"), 32, 32, 0.0));
+    assert_null(video_create(test_path("a.mp4"), 0, 32, 24.0, false));
+    assert_null(video_create(test_path("a.mp4"), 32, 32, 0.0, false));
     assert_message("frames a second");
     assert_int_equal(test_count_files(), 0);
 }
 
 static bool write_noise(void) {
-    video *v = video_create(test_path("full.mp4"), 256, 256, 24.0);
+    video *v = video_create(test_path("full.mp4"), 256, 256, 24.0, false);
     if (!v) return false;
     uint8_t *rgba = mem_alloc(256 * 256 * 4);
     uint32_t random = 5;
