@@ -722,6 +722,10 @@ typedef struct roil_sheet roil_sheet;
 // effect's camera. NULL with a message, as where nothing says a velocity. Free it before the
 // effect.
 roil_sheet *roil_sheet_create(roil_effect *e, const roil_sheet_desc *desc);
+// Whether the medium of a march (NULL: the first) repeats by itself after so many seconds, as far
+// as what it is made of tells: curves and functions, phases and drifts of noise with a `period`.
+// Else `why` gets what does not, such as "the drift of 'worley' repeats every 2.5 s".
+bool roil_repeats(roil_effect *e, const char *source, double seconds, char *why, size_t capacity);
 // Adds the last frame to a cell, times a weight: cells to which several frames are added dissolve
 // from one to the other.
 bool roil_sheet_add(roil_sheet *s, uint32_t cell, double weight);

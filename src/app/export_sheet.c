@@ -26,6 +26,7 @@ typedef struct job {
     app_frames frames;
     int cell, gutter, camera, crop;
     double loop; // s
+    bool whole;  // it repeats by itself
     shot *shots; // by frame
     size_t shot_count, shot_capacity;
     char note[256];
@@ -172,26 +173,35 @@ static bool plan_frames(job *j, const roil_effect_info *info) {
     return true;
 }
 
-// The last quarter of the cells dissolves into what came before the first: both go on meanwhile,
-// each along its own motion.
-static bool plan_loop(job *j, const roil_effect_info *info) {
-    const uint32_t cells = j->desc.columns * j->desc.rows, fade = cells / 4;
+static bool check_loop(const job *j, const roil_effect_info *info, double first, double last) {
+    const double end = info->first_frame + info->frames;
+    if (first >= info->first_frame - 1e-6 && last <= end + 1e-6) return true;
+    return err_set("a loop of %g s%s does not fit into the effect's %g s%s", j->loop,
+                   j->whole ? "" : " and the quarter of it before", info->frames / info->fps,
+                   j->frames.count ? "; --frames says where it begins" : "");
+}
+
+// What repeats by itself is shown once. Of anything else the last quarter of the cells dissolves
+// into what came before the first: both go on meanwhile, each along its own motion.
+static bool plan_loop(job *j, roil_effect *e, const roil_effect_info *info) {
+    char why[160];
+    j->whole = roil_repeats(e, j->desc.source, j->loop, why, sizeof why);
+    const uint32_t cells = j->desc.columns * j->desc.rows, fade = j->whole ? 0 : cells / 4;
     const double step = j->loop * info->fps / cells;
     const double first = j->frames.count ? j->frames.numbers[0] : info->first_frame + step * fade;
-    const double end = info->first_frame + info->frames;
     if (cells < 4) return err_set("a loop of %u cells; at least 4", cells);
-    if (first - step * fade < info->first_frame - 1e-6 || first + step * cells > end + 1e-6)
-        return err_set(
-            "a loop of %g s and the quarter of it before do not fit into the effect's %g s%s",
-            j->loop, info->frames / info->fps,
-            j->frames.count ? "; --frames says where it begins" : "");
+    if (!check_loop(j, info, first - step * fade, first + step * cells)) return false;
     for (uint32_t i = 0; i < cells; i++) {
         const double before = i < cells - fade ? 0 : (double)(i - (cells - fade) + 1) / (fade + 1);
         add_shot(j, first + step * i, i, 1 - before);
         if (before > 0) add_shot(j, first + step * ((double)i - cells), i, before);
     }
-    snprintf(j->note, sizeof j->note,
-             "loop: the last %u cells dissolve into the %u before the first", fade, fade);
+    if (j->whole)
+        snprintf(j->note, sizeof j->note, "loop: the medium repeats by itself after %g s", j->loop);
+    else
+        snprintf(j->note, sizeof j->note,
+                 "loop: the last %u cells dissolve into what came before the first, since %s", fade,
+                 why);
     j->notes[0] = j->note;
     j->options.notes = j->notes;
     j->options.note_count = 1;
@@ -203,7 +213,7 @@ static bool plan_loop(job *j, const roil_effect_info *info) {
 
 static bool plan(job *j, roil_effect *e) {
     roil_effect_info info = roil_get_info(e);
-    if (!(j->loop > 0 ? plan_loop(j, &info) : plan_frames(j, &info))) return false;
+    if (!(j->loop > 0 ? plan_loop(j, e, &info) : plan_frames(j, &info))) return false;
     qsort(j->shots, j->shot_count, sizeof *j->shots, by_frame);
     j->desc.first = j->shots[0].frame;
     j->desc.last = j->shots[j->shot_count - 1].frame;
@@ -239,6 +249,7 @@ static bool export_all(job *j, roil_effect *e) {
         app_warn_of_trouble(e);
         printf("wrote %s: %u cells at %.4g a second\n", roil_sheet_summary(s), j->options.count,
                j->options.fps);
+        if (j->note[0]) printf("%s\n", j->note);
     }
     roil_sheet_free(s);
     return done;

@@ -175,6 +175,10 @@ typedef struct effect_sheet {
 // message, as where nothing tells a temperature.
 bool effect_add_sheet(effect *e, const effect_sheet_desc *desc, effect_sheet *out);
 
+// Whether the medium of that march (NULL: the first) is the same again after so many seconds, by
+// what it is made of (field_repeats).
+bool effect_repeats(effect *e, const char *source, double seconds, strbuf *why);
+
 // Makes the effect draw only kept images and no pictures. Call it before the effect is built.
 void effect_skip_pictures(effect *e);
 

@@ -146,3 +146,19 @@ bool effect_add_sheet(effect *e, const effect_sheet_desc *desc, effect_sheet *ou
             out->images[i] = pass_output(maps, names[i]);
     return !wanted[EFFECT_MAP_SHOWN] || add_final(e, maps, &out->images[EFFECT_MAP_SHOWN]);
 }
+
+bool effect_repeats(effect *e, const char *source, double seconds, strbuf *why) {
+    const pass *p = find_march(e, source);
+    const shader_interface *face = p ? pass_interface(p) : NULL;
+    const value_desc *declared;
+    for (size_t i = 0; face && i < face->field_count; i++) {
+        const field *node = pass_get_field(p, i);
+        if (node && !field_repeats(node, &e->context, seconds, why)) return false;
+    }
+    for (size_t i = 0; face && i < face->uniform_count; i++) {
+        const field *node = pass_get_uniform(p, i);
+        if (!node) node = pass_inherited_uniform(p, i, &declared);
+        if (node && !field_repeats(node, &e->context, seconds, why)) return false;
+    }
+    return face;
+}

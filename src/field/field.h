@@ -161,4 +161,7 @@ bool field_samples(const field *node, const field_grid *grid, int image);
 // added. NULL: nothing in it says one. Grids are asked for it, so call it before they play. Nodes
 // live in `memory`.
 const field *field_velocity(arena *memory, const field *node);
+// Whether it says the same again after so many seconds, from the context's time on, as far as that
+// can be told from what it is made of; `why` then gets what does not.
+bool field_repeats(const field *node, const field_context *context, double seconds, strbuf *why);
 void field_print(const field *node, strbuf *out); // one line, for messages and `roil info graph`

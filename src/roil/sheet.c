@@ -238,6 +238,14 @@ roil_sheet *roil_sheet_create(roil_effect *e, const roil_sheet_desc *desc) {
     return NULL;
 }
 
+bool roil_repeats(roil_effect *e, const char *source, double seconds, char *why, size_t capacity) {
+    strbuf text = {0};
+    bool done = effect_repeats(e->effect, source, seconds, &text);
+    str_copy(why, capacity, strbuf_text(&text));
+    strbuf_free(&text);
+    return done;
+}
+
 static bool add_map(roil_sheet *s, sheet_map map, uint32_t cell, float weight) {
     uint32_t width, height;
     float *pixels = roil_read_linear(s->owner, s->passes.images[sources[map]], &width, &height);

@@ -76,6 +76,17 @@ def middle(picture, columns, index, side=64):
     return sums[0] / sums[2], sums[1] / sums[2], sums[2]
 
 
+# Lumps that rise by two cells of their lattice a second, which repeats after four.
+RISING = """
+local fx = effect { name = "rising", fps = 12, frames = 60 }
+fx.camera = orbit { target = {0, 0, 1}, distance = 6, pitch = 0 }
+local lumps = %s { frequency = 2, octaves = 2, period = 4, drift = {0, 0, -1} }%s
+local ball = sphere { position = {0, 0, 1}, radius = 1, falloff = 0.3 }
+fx.output = final { march { density = ball * smoothstep(0.3, 0.6, lumps) * 6, radiance = {1, 1, 1}, steps = 32 } }.color
+return fx
+"""
+
+
 class Sheets(Case):
     def export(self, effect, *options, output="fire.png"):
         self.write("effect.lua", effect)
@@ -212,6 +223,33 @@ class Sheets(Case):
         lit = 0.2126 * glow["R"][at] + 0.7152 * glow["G"][at] + 0.0722 * glow["B"][at]
         self.assertAlmostEqual(front["A"][at], lit, delta=2e-3)
         self.assertGreater(dark["A"][at], 0.2)
+
+    def apart(self, sheet, columns, a, b):
+        """How far two cells differ, of 255."""
+        seen = [[cell(sheet, columns, i, x, y, 32)[3] for y in range(32) for x in range(32)] for i in (a, b)]
+        return sum(abs(p - q) for p, q in zip(*seen)) / len(seen[0])
+
+    def test_loops_repeat_by_themselves_where_they_do(self):
+        short = ["--grid", "8x1", "--cell", "32"]
+        for noise, tile in ("worley", ""), ("perlin", ""), ("worley", ":tile { resolution = 32, cells = 4 }"):
+            told = self.export(RISING % (noise, tile), "--loop", "2", *short)
+            self.assertEqual(told["notes"], ["loop: the medium repeats by itself after 2 s"])
+            self.assertEqual((told["loop_seconds"], told["fps"]), (2, 4))
+        self.export(RISING % ("worley", ""), "--frames", "1,25", *short)  # 2 s later it is the same
+        self.assertLess(self.apart(self.picture("fire.png"), 8, 0, 1), 0.5)
+        self.export(RISING % ("worley", ""), "--frames", "1,19", *short)
+        self.assertGreater(self.apart(self.picture("fire.png"), 8, 0, 1), 5)
+
+    def test_what_moves_on_dissolves_into_what_was_before(self):
+        told = self.export(RISING % ("worley", ""), "--loop", "1.5", "--grid", "16x1", "--cell", "32")
+        self.assertIn("dissolve into what came before the first, since the drift of 'worley' repeats every 2 s",
+                      told["notes"][0])
+        sheet = self.picture("fire.png")
+        seam, usual = self.apart(sheet, 16, 15, 0), [self.apart(sheet, 16, i, i + 1) for i in range(11)]
+        self.assertLess(seam, 1.3 * max(usual))
+        plain = self.export(RISING % ("worley", ""), "--frames", "5-19", "--grid", "16x1", "--cell", "32")
+        self.assertEqual(plain["frames"], 15)
+        self.assertGreater(self.apart(self.picture("fire.png"), 16, 14, 0), 2 * seam)
 
     def turned(self, told, light):
         """Settings by which the sun shines from `light`: right, up, towards the camera."""
