@@ -4,7 +4,9 @@ import base64
 import json
 import math
 import os
+import shutil
 import struct
+import subprocess
 import time
 import unittest
 
@@ -85,6 +87,65 @@ local ball = sphere { position = {0, 0, 1}, radius = 1, falloff = 0.3 }
 fx.output = final { march { density = ball * smoothstep(0.3, 0.6, lumps) * 6, radiance = {1, 1, 1}, steps = 32 } }.color
 return fx
 """
+
+# A scene of Godot 3 that draws a sheet as its preset says, saves what is seen, and ends.
+GODOT = {
+    "project.godot": """config_version=4
+[application]
+run/main_scene="res://main.tscn"
+[display]
+window/size/width=96
+window/size/height=96
+[rendering]
+quality/driver/driver_name="GLES2"
+environment/default_clear_color=Color( 0, 0, 0, 1 )
+""",
+    "main.tscn": """[gd_scene load_steps=2 format=2]
+[ext_resource path="res://main.gd" type="Script" id=1]
+[node name="Main" type="Node2D"]
+script = ExtResource( 1 )
+""",
+    "main.gd": """extends Node2D
+func texture(name):
+    var image = Image.new()
+    if image.load(ProjectSettings.globalize_path("res://" + name)) != OK:
+        OS.exit_code = 1
+    var made = ImageTexture.new()
+    made.create_from_image(image, Texture.FLAG_FILTER)
+    return made
+func _ready():
+    var file = File.new()
+    file.open("res://fire.json", File.READ)
+    var told = parse_json(file.get_as_text())
+    var shader = Shader.new()
+    shader.code = "shader_type canvas_item; render_mode blend_premul_alpha, unshaded;" + \
+        "uniform sampler2D color; uniform sampler2D motion; uniform vec2 grid; uniform float scale; uniform float part;" + \
+        "vec2 moves(vec2 cell, vec2 at) { return (texture(motion, (cell + at) / grid).rg * 2.0 - 1.0) * scale; }" + \
+        "void fragment() { vec2 next = vec2(1.0, 0.0);" + \
+        " vec4 one = texture(color, (UV - moves(vec2(0.0), UV) * part) / grid);" + \
+        " vec4 two = texture(color, (next + UV + moves(next, UV) * (1.0 - part)) / grid); COLOR = mix(one, two, part); }"
+    var material = ShaderMaterial.new()
+    material.shader = shader
+    for map in told["maps"]:
+        if map["map"] != "color" and map["map"] != "motion": continue
+        material.set_shader_param(map["map"], texture(map["file"]))
+        if map["map"] == "motion": material.set_shader_param("scale", map["scale"])
+    material.set_shader_param("grid", Vector2(told["grid"][0], told["grid"][1]))
+    var rect = ColorRect.new()
+    rect.rect_size = Vector2(48, 48)
+    rect.material = material
+    add_child(rect)
+    for part in [0.0, 0.5]:
+        material.set_shader_param("part", part)
+        yield(VisualServer, "frame_post_draw")
+        yield(VisualServer, "frame_post_draw")
+        var seen = get_viewport().get_texture().get_data()
+        seen.flip_y()
+        seen.convert(Image.FORMAT_RGB8)
+        seen.save_png(ProjectSettings.globalize_path("res://seen%d.png" % int(part * 10)))
+    get_tree().quit()
+""",
+}
 
 
 class Sheets(Case):
@@ -291,6 +352,24 @@ class Sheets(Case):
         self.assertGreater(found["vectors"], found["fade"] + 2, found)
         self.assertGreater(found["fade"], found["none"], found)
         self.assertEqual([a for a in page.requests if not a.endswith("carried.html")], [])  # it needs nothing else
+
+    @unittest.skipUnless(shutil.which("godot3") and shutil.which("xvfb-run"),
+                         "no Godot 3 (apt-get install godot3 xvfb): no scene of an engine is tested")
+    def test_an_engine_plays_it(self):
+        for name, text in GODOT.items():
+            self.write(name, text.replace("    ", "\t") if name.endswith(".gd") else text)
+        self.export(CARRIED, "--frames", "4,8", "--grid", "2x1", "--cell", "48", "--maps", "color,motion", "--for", "godot")
+        self.export(CARRIED, "--frames", "4,6,8", "--grid", "3x1", "--cell", "48", output="truth.png")
+        done = subprocess.run(["xvfb-run", "-a", "-s", "-screen 0 640x480x24", "godot3", "--path", self.folder, "--audio-driver", "Dummy"],
+                              env={**os.environ, "HOME": self.folder}, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                              stdin=subprocess.DEVNULL, timeout=100, check=False)
+        self.assertEqual(done.returncode, 0, done.stdout)
+        truth = Png(self.read("truth.png"))
+        wanted = [[cell(truth, 3, i, x, y, 48)[0] for y in range(48) for x in range(48)] for i in range(3)]
+        first, between = ([v for row in Png(self.read(f"seen{i}.png")).rows[:48] for v in row[:48 * 3:3]] for i in (0, 5))
+        self.assertGreater(psnr(wanted[0], first), 40)
+        fade = [(a + b) / 2 for a, b in zip(wanted[0], wanted[2])]
+        self.assertGreater(psnr(wanted[1], between), psnr(wanted[1], fade) + 2)
 
     def load(self, page, name):
         page.open(self.path(name), 1000)
