@@ -1,4 +1,4 @@
-// Particles as a field: dust = deposit { chaff, box = { min, max } } gives dust.density.
+// Particles as a field: dust = deposit { chaff, box = { min, max } } gives dust.density and dust.velocity.
 #include "pass/particles/deposit.h"
 #include "script/binding.h"
 #include <string.h>
@@ -34,7 +34,7 @@ static int l_deposit(lua_State *L) {
     return 1;
 }
 
-// .density, .box
+// .density, .velocity, .box
 static int l_index(lua_State *L) {
     const deposit_object *object = luaL_checkudata(L, 1, "deposit");
     const char *name = luaL_checkstring(L, 2);

@@ -327,6 +327,7 @@ const script_object reference_sources[] = {
         KEY("name", "deposit", "for --set NAME.amount=value and statistics; numbered when taken")),
      .members = KEYS(
         KEY("density", "field 1/m", "extinction of the particles in a cell; 0 outside of the box"),
+        KEY("velocity", "field m/s", "mean of the particles in a cell; 0 where none is"),
         KEY("box", "{ min = {x, y, z}, max = {x, y, z} } m", "as it was given"))},
     {.name = NULL},
 };

@@ -78,6 +78,15 @@ def middle(picture, columns, index, side=64):
     return sums[0] / sums[2], sums[1] / sums[2], sums[2]
 
 
+DUST = """
+local fx = effect { name = "dust", fps = 24, frames = 24 }
+fx.camera = orbit { target = {0, 0, 1}, distance = 6, pitch = 0 }
+local chaff = particles { count = 4000, burst = 4000, lifetime = 5, seed = 3, position = {-0.5, 0, 0.6}, radius = 0.4,
+                          speed = {1, 0, 0.5}, spread = 0, variation = 0 }
+local dust = deposit { chaff, box = { min = {-2, -1, 0}, max = {2, 1, 2} }, resolution = 48, size = 0.05 }
+fx.output = final { march { density = dust.density * 2, steps = 48 } }.color
+return fx
+"""
 # Lumps that rise by two cells of their lattice a second, which repeats after four.
 RISING = """
 local fx = effect { name = "rising", fps = 12, frames = 60 }
@@ -239,6 +248,15 @@ class Sheets(Case):
             self.assertIn("steps", told)
         self.fails(1, ["nothing says how the medium of pass 'march' moves", "add color to the maps"], "export", "sheet",
                    self.write("still.lua", ROLLING), "-o", "still.png", "--maps", "motion")
+
+    def test_motion_of_particles_is_theirs(self):
+        told = self.export(DUST, "--frames", "3,6", "--maps", "color,motion", "--grid", "2x1", "--cell", "48", output="dust.exr")
+        colors, motion = self.floats("dust.exr"), self.floats("dust-motion.exr")
+        weight = sum(colors["A"])
+        for channel, metres in ("R", 1), ("G", 0.5):  # it is interpolated with cells that hold nothing
+            seen = sum(a * v for a, v in zip(colors["A"], motion[channel])) / weight
+            wanted = metres * 3 / 24 / told["size_m"][0]
+            self.assertAlmostEqual(seen, wanted, delta=0.1 * wanted)
 
     @unittest.skipUnless(os.path.exists(FLOW), "built without OpenCV (apt-get install libopencv-video-dev)")
     def test_motion_is_estimated_where_nothing_says_it(self):

@@ -5,10 +5,12 @@
 //@ field float size = 0.02 : diameter (m), as of `splats`
 //@ field float opacity = 1 : of its middle, as of `splats`
 uniform float amount;              //= 1 [0, 1e6] : factor of what they take
+uniform bool moving; // `velocity` is read
 uniform vec3 cells;
 uniform vec3 box_min;
 uniform vec3 box_max;
 writeonly uniform image3D density; //= output r16f : extinction (1/m)
+writeonly uniform image3D velocity; //= output rgba16f optional : mean of the particles there (m/s)
 
 #include "lib/frame.glsl"
 #include "lib/random.glsl"
@@ -16,12 +18,18 @@ writeonly uniform image3D density; //= output r16f : extinction (1/m)
 #include "lib/particle.glsl"
 #include "fields.glsl"
 
-layout(std430) buffer DepositSums { uint deposit_sums[]; }; // of each cell, in parts of UNIT
-const float UNIT = 65536.0, MOST = 60000.0;
+// Of each cell, in parts of UNIT. Then, where they are read, of each cell its particles and their
+// velocities, in parts of MOTION_UNIT; what is below 0 goes round, and sums come out right.
+layout(std430) buffer DepositSums { uint deposit_sums[]; };
+const float UNIT = 65536.0, MOST = 60000.0, MOTION_UNIT = 1024.0, FASTEST = 1000.0;
 
 uint cell_number(ivec3 cell) {
     ivec3 size = ivec3(cells);
     return uint((cell.z * size.y + cell.y) * size.x + cell.x);
+}
+
+uint motion_number(ivec3 cell) {
+    return uint(cells.x * cells.y * cells.z) + 4u * cell_number(cell);
 }
 
 #if defined(STAGE_ADD)
@@ -49,7 +57,12 @@ void main() {
         if (any(lessThan(to, ivec3(0))) || any(greaterThanEqual(to, ivec3(cells)))) continue;
         vec3 share = mix(1.0 - part, part, vec3(side));
         float chance = float(random_hash(seed + uint(i)) >> 8) / 16777216.0;
-        atomicAdd(deposit_sums[cell_number(to)], uint(taken * share.x * share.y * share.z * UNIT + chance));
+        float whole = share.x * share.y * share.z;
+        atomicAdd(deposit_sums[cell_number(to)], uint(taken * whole * UNIT + chance));
+        if (!moving) continue;
+        ivec3 moved = ivec3(whole * clamp(p.velocity, -FASTEST, FASTEST) * MOTION_UNIT);
+        atomicAdd(deposit_sums[motion_number(to)], uint(whole * MOTION_UNIT));
+        for (int c = 0; c < 3; c++) atomicAdd(deposit_sums[motion_number(to) + uint(c + 1)], uint(moved[c]));
     }
 }
 #endif
@@ -63,5 +76,12 @@ void main() {
     uint sum = deposit_sums[cell_number(cell)];
     deposit_sums[cell_number(cell)] = 0u; // for the next frame
     imageStore(density, cell, vec4(min(float(sum) / UNIT, MOST)));
+    if (!moving) return;
+    uint at = motion_number(cell);
+    vec3 mean = vec3(0.0);
+    float count = float(deposit_sums[at]);
+    for (int c = 0; c < 3; c++) mean[c] = float(int(deposit_sums[at + uint(c + 1)])) / max(count, 1.0);
+    for (uint c = 0u; c < 4u; c++) deposit_sums[at + c] = 0u;
+    imageStore(velocity, cell, vec4(mean, 1.0));
 }
 #endif

@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-#define NAMES(NAME) NAME(density), NAME(cells), NAME(DepositSums)
+#define NAMES(NAME) NAME(density), NAME(velocity), NAME(moving), NAME(cells), NAME(DepositSums)
 enum { NAMES(KERNEL_NAME_ID) };
 static const char *const names[] = {NAMES(KERNEL_NAME_TEXT)};
 
@@ -36,9 +36,11 @@ static const char *field_name(const field_grid *grid, size_t index) {
 }
 
 static int find_field(field_grid *grid, const char *name, int *components) {
-    *components = 1;
+    const bool velocity = strcmp(name, "velocity") == 0;
+    *components = velocity ? 3 : 1;
+    if (velocity) return 4; // the first channel of the second image
     if (strcmp(name, "density") == 0) return 0;
-    err_set("%s: no field '%s'; it has density", grid->name, name);
+    err_set("%s: no field '%s'; it has density and velocity", grid->name, name);
     return -1;
 }
 
@@ -65,7 +67,7 @@ field_grid *pass_deposit_open(pass *p, const pass_deposit_desc *desc) {
     s->grid = (field_grid){
         .name = p->label,
         .box = desc->box,
-        .channel_count = 1,
+        .channel_count = 7,
         .state = {.active = desc->box},
         .field_name = field_name,
         .find_field = find_field,
@@ -79,17 +81,21 @@ field_grid *pass_deposit_open(pass *p, const pass_deposit_desc *desc) {
 static bool deposit_declare(pass *p) {
     deposit_state *s = state_of(p);
     const uint32_t *n = s->grid.size;
-    if (!pass_add_output(p, N_density,
-                         (graph_image_desc){.width = n[0], .height = n[1], .depth = n[2]}))
+    const graph_image_desc size = {.width = n[0], .height = n[1], .depth = n[2]};
+    graph_image_desc optional = size;
+    optional.optional = true;
+    if (!pass_add_output(p, N_density, size) || !pass_add_output(p, N_velocity, optional))
         return false;
     pass_host_add_grid_image(p->host, &s->grid, 0, *pass_image(p, N_density));
+    pass_host_add_grid_image(p->host, &s->grid, 1, *pass_image(p, N_velocity));
     return pass_add_to_graph(p);
 }
 
 static size_t deposit_buffers(const pass *p, pass_buffer out[PASS_BUFFERS]) {
     deposit_state *s = p->state;
     const uint32_t *n = s->grid.size;
-    out[0] = (pass_buffer){&s->sums, "sums of particles", 4ull * n[0] * n[1] * n[2]};
+    const uint64_t sums = graph_is_read(p->host->graph, *pass_image(p, N_velocity)) ? 5 : 1;
+    out[0] = (pass_buffer){&s->sums, "sums of particles", 4 * sums * n[0] * n[1] * n[2]};
     return 1;
 }
 
@@ -99,6 +105,7 @@ static bool deposit_update(pass *p) {
     const field_grid *grid = &state_of(p)->grid;
     const float cells[3] = {(float)grid->size[0], (float)grid->size[1], (float)grid->size[2]};
     pass_set(p, N_cells, cells, sizeof cells);
+    pass_set_int(p, N_moving, graph_is_read(p->host->graph, *pass_image(p, N_velocity)));
     pass_set_box(p, grid->box);
     return true;
 }
