@@ -1,4 +1,5 @@
-// Particles as a field: dust = deposit { chaff, box = { min, max } } gives dust.density and dust.velocity.
+// Particles as a field: dust = deposit { chaff, box = { min, max } } gives dust.density and
+// dust.velocity.
 #include "pass/particles/deposit.h"
 #include "script/binding.h"
 #include <string.h>
