@@ -192,7 +192,9 @@ static bool plan_loop(job *j, roil_effect *e, const roil_effect_info *info) {
     if (cells < 4) return err_set("a loop of %u cells; at least 4", cells);
     if (!check_loop(j, info, first - step * fade, first + step * cells)) return false;
     for (uint32_t i = 0; i < cells; i++) {
-        const double before = i < cells - fade ? 0 : (double)(i - (cells - fade) + 1) / (fade + 1);
+        const double part = i < cells - fade ? 0 : (i - (cells - fade) + 1.0) / (fade + 1.0);
+        const double before =
+            part * part * (3 - 2 * part); // slow at both ends, of which one is the seam
         add_shot(j, first + step * i, i, 1 - before);
         if (before > 0) add_shot(j, first + step * ((double)i - cells), i, before);
     }
