@@ -59,6 +59,7 @@ bool sheet_write_all(roil_sheet *s, const char *file, const roil_sheet_options *
                      const sheet_engine *engine);
 // Fills SHEET_MOTION from the colours of the first `count` cells.
 bool sheet_find_flow(roil_sheet *s, uint32_t count, bool loops, double fps);
+json_t *sheet_text(const char *from); // as UTF-8, which JSON wants: names can be anything
 // The description, which the caller owns.
 json_t *sheet_describe(const roil_sheet *s, const char *file, const roil_sheet_options *options,
                        const sheet_engine *engine);

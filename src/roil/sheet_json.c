@@ -5,6 +5,17 @@
 #include <math.h>
 #include <string.h>
 
+json_t *sheet_text(const char *from) {
+    json_t *value = json_string(from);
+    if (value) return value;
+    char *clean = mem_copy(from, strlen(from) + 1);
+    for (char *at = clean; *at; at++)
+        if ((unsigned char)*at >= 128) *at = '?';
+    value = json_string(clean);
+    mem_free(clean);
+    return value;
+}
+
 static json_t *pair(double a, double b) {
     return json_pack("[f, f]", a, b);
 }
@@ -29,8 +40,7 @@ static json_t *lines(const char *const *from, size_t count, const char *file) {
                        mark + 2);
         else
             strbuf_add(&line, "%s", from[i]);
-        json_t *text = json_string(strbuf_text(&line)); // NULL: not UTF-8
-        json_array_append_new(all, text ? text : json_string("?"));
+        json_array_append_new(all, sheet_text(strbuf_text(&line)));
         strbuf_free(&line);
     }
     return all;
@@ -42,8 +52,7 @@ json_t *sheet_describe(const roil_sheet *s, const char *file, const roil_sheet_o
     const double width = a->right - a->left, height = a->bottom - a->top, cell = s->cell;
     const double metres = (double)s->height / cell;
     json_t *all = json_object();
-    json_t *name = json_string(effect_name(s->owner->effect));
-    json_object_set_new(all, "effect", name ? name : json_string("?"));
+    json_object_set_new(all, "effect", sheet_text(effect_name(s->owner->effect)));
     json_object_set_new(all, "version", json_string(roil_version()));
     json_object_set_new(all, "grid", json_pack("[i, i]", (int)s->columns, (int)s->rows));
     json_object_set_new(all, "order", json_string("left to right, top to bottom"));

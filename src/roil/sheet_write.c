@@ -98,8 +98,12 @@ json_t *sheet_write(roil_sheet *s, const char *file, const char *format, const s
                     : write_bytes(name, what, strcmp(format, "tga") == 0);
     json_t *entry = NULL;
     if (done) {
-        entry = json_pack("{s:s, s:s, s:s}", "map", what->what, "file", path_name(name), "encoding",
-                          what->srgb && strcmp(format, "exr") != 0 ? "srgb" : "linear");
+        entry = json_object();
+        json_object_set_new(entry, "map", json_string(what->what));
+        json_object_set_new(entry, "file", sheet_text(path_name(name)));
+        json_object_set_new(
+            entry, "encoding",
+            json_string(what->srgb && strcmp(format, "exr") != 0 ? "srgb" : "linear"));
         json_array_append_new(s->files, entry);
         strbuf_add(&s->summary, "%s%s", s->summary.length ? ", " : "", name);
     }

@@ -185,6 +185,8 @@ class Sheets(Case):
             self.assertAlmostEqual(x, told["pivot"][0] * 64 + 0.4 * i * metre, delta=0.3)
             self.assertAlmostEqual(y, told["pivot"][1] * 64 - metre, delta=0.3)
             self.assertAlmostEqual(area, math.pi * (0.5 * metre) ** 2, delta=0.06 * area)
+            edge = [(a, b) for a in range(64) for b in (0, 3, 60, 63)]  # the gutter stays empty
+            self.assertEqual({tuple(cell(sheet, 2, i, *at)) for at in edge + [at[::-1] for at in edge]}, {(0, 0, 0, 0)})
 
     def test_alpha_and_colour_are_the_mediums(self):
         self.export(ROLLING, "--frames", "1", "--set", "thick=2", "--light", "scene", *SHORT, output="fire.exr")
