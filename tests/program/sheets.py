@@ -231,7 +231,13 @@ class Sheets(Case):
         self.assertEqual((right - left) % 4, 0)
         sheet = self.picture("fire.png")
         self.assertEqual((sheet.width, sheet.height), (2 * (right - left), 2 * (bottom - top)))
-        self.assertAlmostEqual(told["pivot"][0] * (right - left) + left, 32 - 5 * 64 / (told["size_m"][0] / (right - left) * 64), delta=0.1)
+        wide, high = right - left, bottom - top
+        alpha = [(x, y, sheet.rows[y][4 * x + 3]) for y in range(high) for x in range(wide)]
+        whole = sum(a for _, _, a in alpha)
+        x, y = (sum((at[k] + 0.5) * at[2] for at in alpha) / whole for k in (0, 1))
+        metre = wide / told["size_m"][0]
+        self.assertAlmostEqual(x, told["pivot"][0] * wide, delta=0.3)  # of the ball, a metre above the origin
+        self.assertAlmostEqual(y, told["pivot"][1] * high - metre, delta=0.3)
 
     def test_motion_is_that_of_the_medium(self):
         told = self.export(CARRIED, "--frames", "1,3", "--maps", "color,motion", *SHORT, output="fire.exr")
