@@ -6,7 +6,7 @@ local words = {
   "curve", "deposit", "disc", "div", "dot", "effect", "exp", "explosions", "final", "floor", "forward",
   "fract", "geometry", "glsl", "history", "image", "instance_glow", "instance_index", "instance_random",
   "instance_state", "instances", "layers", "lbm", "length", "lerp", "light_index", "light_random",
-  "lighting", "march", "material", "max", "mesh", "meter", "min", "mix", "mul", "negate", "node", "orbit",
+  "lighting", "maps", "march", "material", "max", "mesh", "meter", "min", "mix", "mul", "negate", "node", "orbit",
   "outline", "over", "over_age", "palette", "param", "particle_age", "particle_quantity", "particle_random",
   "particle_velocity", "particles", "perlin", "pick", "pieces", "point_light", "point_light_glows",
   "point_lights", "position", "pow", "pyro", "quantise", "raw", "reference", "remap", "rgb", "saturate",

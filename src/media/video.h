@@ -14,5 +14,5 @@ video *video_create(const char *path, uint32_t width, uint32_t height, double fp
 bool video_add(video *v, const uint8_t *rgba); // width * height * 4 bytes, sRGB
 // What the file says of itself, where its kind can.
 void video_set_comment(video *v, const char *text);
-bool video_finish(video *v);                   // completes the file and frees `v`
-void video_abandon(video *v);                  // frees `v` and leaves no file; NULL is allowed
+bool video_finish(video *v);  // completes the file and frees `v`
+void video_abandon(video *v); // frees `v` and leaves no file; NULL is allowed
