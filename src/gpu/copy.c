@@ -82,6 +82,30 @@ bool gpu_buffer_copy(gpu *g, gpu_buffer *from, gpu_buffer *to, uint64_t size) {
     return size == 0 || copy_bytes(g, from, 0, to, size);
 }
 
+bool gpu_image_copy(gpu *g, gpu_image *from, gpu_image *to) {
+    VkExtent3D extent, other;
+    uint64_t bytes;
+    vk_image_extent(from, 0, &extent, &bytes);
+    vk_image_extent(to, 0, &other, &bytes);
+    if (from == to || from->desc.format != to->desc.format ||
+        memcmp(&extent, &other, sizeof extent) != 0) {
+        return err_set("image '%s' cannot be copied to '%s'; another image of its format and size "
+                       "is accepted",
+                       from->desc.label, to->desc.label);
+    }
+    VkCommandBuffer commands = vk_commands(g);
+    if (!commands) return false;
+    vk_uses_begin(g);
+    vk_use_image(g, from, 0, 1, vk_image_from);
+    vk_use_image(g, to, 0, 1, vk_image_to);
+    vk_uses_flush(g, commands);
+    VkImageSubresourceLayers layers = {.aspectMask = from->aspect, .layerCount = 1};
+    VkImageCopy region = {.srcSubresource = layers, .dstSubresource = layers, .extent = extent};
+    vkCmdCopyImage(commands, from->handle, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to->handle,
+                   VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
+    return true;
+}
+
 // ---- reading back -----------------------------------------------------------------------------
 
 static bool between_frames(gpu *g, const char *label) {

@@ -248,6 +248,10 @@ bool gpu_frame_wait(gpu *g, uint64_t frame); // until that frame has finished
 bool gpu_frame_done(gpu *g, uint64_t frame); // it has finished; never waits
 uint64_t gpu_frame_open(const gpu *g);       // number of the open frame; 0: none is
 bool gpu_idle(gpu *g);                       // until all has finished
+// How many submissions have not finished. Never waits; a device that is asked again and again and
+// has finished nothing for gpu_desc.timeout counts as lost.
+uint64_t gpu_pending(gpu *g);
+void gpu_give_up(gpu *g); // what it works on hangs: the device counts as lost
 
 // Brackets the work of one pass: its GPU time is measured and debuggers see the label.
 void gpu_pass_begin(gpu *g, const char *label);
@@ -337,3 +341,5 @@ void gpu_buffer_fill(gpu *g, gpu_buffer *buffer, uint32_t word);      // inside 
 // Copies mip 0, tightly packed, to `offset` of the buffer.
 bool gpu_image_copy_to_buffer(gpu *g, gpu_image *image, gpu_buffer *buffer, uint64_t offset);
 bool gpu_buffer_copy(gpu *g, gpu_buffer *from, gpu_buffer *to, uint64_t size); // from the beginning
+// Copies mip 0 between two images of one format and size.
+bool gpu_image_copy(gpu *g, gpu_image *from, gpu_image *to);

@@ -3,6 +3,7 @@
 // A device is lost when the driver says so, or when it finishes nothing for gpu_desc.timeout: then
 // its work is taken to hang, and nothing may wait for it any more. What is known of the loss is
 // written down once, by the thread of the gpu, and every later call repeats it.
+#include "base/clock.h"
 #include "gpu/vk.h"
 #include <stdarg.h>
 #include <stdio.h>
@@ -118,6 +119,21 @@ bool vk_wait(gpu *g, uint64_t serial) {
 
 bool vk_wait_where_driver_would(gpu *g) {
     return !g->profile.waits_in_calls || vk_wait(g, g->submitted);
+}
+
+uint64_t gpu_pending(gpu *g) {
+    uint64_t before = g->completed;
+    if (atomic_load(&g->lost)) return 0;
+    uint64_t pending = g->submitted - vk_completed(g);
+    double now = clock_seconds();
+    if (!pending || g->completed > before || g->stalled == 0) g->stalled = pending ? now : 0;
+    if (pending && (now - g->stalled) * 1e9 >= (double)g->timeout) vk_lose(g, VK_TIMEOUT);
+    return atomic_load(&g->lost) ? 0 : pending;
+}
+
+void gpu_give_up(gpu *g) {
+    g->given_up = true;
+    vk_lose(g, VK_TIMEOUT);
 }
 
 uint64_t vk_completed(gpu *g) {

@@ -57,6 +57,9 @@ static void choose_driver(gpu_profile *p, gpu_kind kind, VkDriverId driver, cons
     // A march on 2 cores: 71 ms with one dispatch, 30 with slices.
     p->slices_dispatches = rewrite.slices;
     p->waits_in_calls = software; // seen of lavapipe and of SwiftShader
+    // There is one queue, and frames take seconds. The system shares cores among threads; a picture
+    // goes from one device to the other through memory that both have.
+    p->shows_apart = software;
     p->shares_memory = software || kind == GPU_INTEGRATED;
     p->timeout = software ? 300 : 30; // frames are slow there, and a hang freezes no desktop
 }

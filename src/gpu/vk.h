@@ -375,7 +375,8 @@ struct gpu {
     char loss[512];           // how and where the device was lost
     bool hung;                // work did not finish in time, and may never
     uint64_t timeout;         // nanoseconds
-    bool given_up;            // by `waiting`, sooner than that
+    bool given_up;            // by `waiting` or gpu_give_up, sooner than that
+    double stalled;           // clock_seconds when gpu_pending first saw no progress; 0: it did not
     bool (*waiting)(void *user, double seconds);
     void *waiting_user;
     pthread_t owner; // which calls it
