@@ -38,7 +38,7 @@ effect *effect_create(const effect_desc *desc) {
         e->roots[e->root_count++] = arena_string(&e->memory, desc->assets[i]);
     e->name = arena_string(&e->memory, path_name(desc->file));
     e->fps = 24;
-    e->updated = (double)NAN;
+    e->updated = e->partly = (double)NAN;
     e->frames = 1;
     e->first = 1;
     scene_init(&e->scene, &e->memory);
@@ -85,8 +85,7 @@ effect *effect_create(const effect_desc *desc) {
 
 void effect_destroy(effect *e) {
     if (!e) return;
-    effect_forget_snapshots(e);
-    mem_free(e->snapshots);
+    effect_free_snapshots(&e->snapshots);
     mem_free(e->ahead_times);
     if (e->probe) pass_destroy(e->probe);
     for (size_t i = 0; i < e->pass_count; i++) pass_destroy(e->passes[i]);

@@ -355,6 +355,18 @@ bool effect_get_simulation(const effect *e, effect_simulation *out); // false: n
 // GPU times by label, at most `capacity`, of what was simulated for the frame rendered last before
 // it was recorded. Waits for that. 0 in an effect that never waits.
 size_t effect_times_ahead(effect *e, gpu_pass_time *out, size_t capacity);
+// Submits a part of the steps that simulations need to come to a frame, of which recording the
+// frame would not do the rest; `more`: there was one. With never_waits.
+bool effect_catch_up(effect *e, double frame, bool *more);
+// Frames of which a snapshot was kept, in rising order.
+size_t effect_list_snapshots(const effect *e, double *frames, size_t capacity);
+// Snapshots that are none of an effect's now, and the state that they began with, which is kept
+// whatever numbers are set. NULL: nothing simulates, or there is no memory for its state.
+typedef struct effect_branch effect_branch;
+effect_branch *effect_branch_begin(effect *e);         // of the state after the last frame
+effect_branch *effect_branch_leave(effect *e);         // takes the effect's
+void effect_branch_enter(effect *e, effect_branch *b); // gives it these, frees `b`; NULL: none
+void effect_branch_destroy(effect_branch *b);
 void effect_restart(effect *e); // simulations start from the beginning with the next frame
 // Save and load the state of all simulations, between frames, after effect_allocate. When a state
 // cannot be loaded, they start from the beginning. `frame` is the one that was rendered last.

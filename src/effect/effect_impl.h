@@ -25,18 +25,27 @@ bool effect_simulate(effect *e, double frame, bool *again);
 struct checkpoint;
 struct checkpoint_list;
 bool effect_can_save(const effect *e); // all simulations have a state now
-void effect_list_state(const effect *e, struct checkpoint_list *out);
+void effect_list_state(const effect *e, double frame, struct checkpoint_list *out); // after it
 bool effect_take_state(effect *e, struct checkpoint *c); // false: all start from the beginning
 
-// Snapshots of simulations while a window plays, for going back in time (snapshots.c).
-void effect_keep_snapshot(effect *e);         // after a frame
-bool effect_go_back(effect *e, double frame); // to the last one until then; false: none
-void effect_forget_snapshots(effect *e);      // numbers have changed
+// Snapshots of simulations in a window, for going back and forth in time (snapshots.c).
+void effect_keep_snapshot(effect *e, double frame); // which has just been simulated
+// To the last one until a frame, if that is after another frame. False: there is none.
+bool effect_take_snapshot(effect *e, double frame, double after);
+void effect_forget_snapshots(effect *e);                   // numbers have changed
 void effect_forget_snapshots_from(effect *e, double time); // events of this time or later (s)
 typedef struct effect_snapshot {
     double frame;
+    bool root; // a branch began here: it holds whatever numbers are set
     struct checkpoint *state;
 } effect_snapshot;
+typedef struct effect_snapshots {
+    effect_snapshot *list; // by frame
+    size_t count, capacity;
+    double gap; // frames from one to the next at least; 0: a second
+} effect_snapshots;
+void effect_free_snapshots(effect_snapshots *s);
+void effect_stop_simulations(effect *e); // they have no state: the next frame finds one
 
 // ---- systems.c: functions of the script that run from frame to frame (events.h) -----------------
 
@@ -159,6 +168,8 @@ struct effect {
         ahead; // the submission simulated last before the frame; 0: none, or its times are known
     gpu_pass_time *ahead_times; // of those before it, by label
     size_t ahead_count, ahead_capacity;
+    bool stepped;  // they went on since then (effect_catch_up) ...
+    double partly; // ... and some of the steps of this frame were done; NAN: of none
     bool (*progress)(void *user, double done, double whole); // effect_on_progress
     void *progress_user;
     shared_mat4 clip, last_clip; // world to clip of the frame being recorded, of the one before
@@ -166,13 +177,11 @@ struct effect {
     uint32_t in_a_row;           // frames before the last one that histories tell of
     bool has_last;               // there is one before, of which histories tell
     bool compiled, allocated;
-    uint32_t reference;         // effect_desc
-    bool never_waits;           // effect_desc
-    double seconds;             // of it, as they hold
-    bool unseen;                // its pictures are not drawn
-    effect_snapshot *snapshots; // by frame
-    size_t snapshot_count, snapshot_capacity;
-    double snapshot_gap; // frames from one to the next at least; 0: a second
+    uint32_t reference; // effect_desc
+    bool never_waits;   // effect_desc
+    double seconds;     // of it, as they hold
+    bool unseen;        // its pictures are not drawn
+    effect_snapshots snapshots;
     const effect_setting *settings;
     bool *applied; // one per setting
     size_t setting_count;

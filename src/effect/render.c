@@ -281,6 +281,7 @@ static void forget(effect *e) { // the frames before
 uint64_t effect_render(effect *e, double frame, bool jump) {
     if (e->counter && !jump && frame != e->last_frame + 1) forget(e);
     bool again;
+    if (e->never_waits && !e->stepped && !e->behind) effect_keep_snapshot(e, e->last_frame);
     if (!effect_simulate(e, frame, &again)) return 0;
     uint64_t number = gpu_frame_begin(e->device);
     if (!number) return 0;
@@ -300,7 +301,6 @@ uint64_t effect_render(effect *e, double frame, bool jump) {
     e->last_clip = e->clip;
     e->last_frame = frame;
     e->rendered_at = clock_seconds();
-    if (e->never_waits) effect_keep_snapshot(e);
     return number;
 }
 

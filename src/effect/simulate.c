@@ -63,29 +63,42 @@ static bool is_past(const effect *e, double time) {
     return false;
 }
 
-// Simulations that are beyond the frame restart, or all continue from a snapshot before it.
-static void turn_back(effect *e, double frame) {
-    double time = time_of(e, frame);
-    if (!is_past(e, time) || effect_go_back(e, frame)) return;
-    pass *p;
-    for (size_t i = 0; (p = next_simulation(e, &i));)
-        if (pass_get_simulation(p)->left(p, time) < 0) pass_get_simulation(p)->restart(p);
-}
-
-void effect_restart(effect *e) {
-    pass *p;
-    effect_forget_snapshots(e);
-    effect_restart_systems(e);
-    effect_restart_clocks(e);
-    if (!e->compiled) return;
-    for (size_t i = 0; (p = next_simulation(e, &i));) pass_get_simulation(p)->restart(p);
-}
-
 // Returns the first frame that has not been simulated, at most `frame`.
 static double next_frame(const effect *e, double frame) {
     double shown = reached(e);
     double next = isfinite(shown) ? floor(shown * e->fps + 1e-6) + e->first + 1 : (double)e->first;
     return fmin(fmax(next, (double)e->first), frame);
+}
+
+// Simulations that are beyond the frame restart, or all continue from a snapshot before it; so they
+// do where one has already been closer to it than they are.
+static void turn_to(effect *e, double frame) {
+    double time = time_of(e, frame);
+    bool past = is_past(e, time);
+    double after = past ? -(double)INFINITY : next_frame(e, frame) - 1;
+    if (effect_take_snapshot(e, frame, after) || !past) return;
+    e->partly = (double)NAN;
+    pass *p;
+    for (size_t i = 0; (p = next_simulation(e, &i));)
+        if (pass_get_simulation(p)->left(p, time) < 0) pass_get_simulation(p)->restart(p);
+}
+
+void effect_stop_simulations(effect *e) {
+    pass *p;
+    e->partly = (double)NAN;
+    e->stepped = e->behind = false;
+    graph_reset_history(e->graph);
+    for (size_t i = 0; (p = next_simulation(e, &i));) pass_get_simulation(p)->restart(p);
+}
+
+void effect_restart(effect *e) {
+    pass *p;
+    effect_free_snapshots(&e->snapshots); // those that branches began with, too
+    effect_restart_systems(e);
+    effect_restart_clocks(e);
+    e->partly = (double)NAN;
+    if (!e->compiled) return;
+    for (size_t i = 0; (p = next_simulation(e, &i));) pass_get_simulation(p)->restart(p);
 }
 
 // Adds the times of the submission simulated last to those of the frame, which waits for it.
@@ -138,7 +151,7 @@ static bool simulate_until(effect *e, double frame, bool *again) {
     bool far = next < frame || !is_near(e, time);
     if (far && !effect_tell_progress(e, 0, (double)whole)) return false;
     while (next < frame || !is_near(e, time)) {
-        if (e->never_waits && clock_seconds() > begin + patience) {
+        if (e->never_waits && (e->stepped || clock_seconds() > begin + patience)) {
             e->behind = true;
             break;
         }
@@ -156,10 +169,31 @@ bool effect_simulate(effect *e, double frame, bool *again) {
     e->ahead = e->ahead_count = 0;
     if (!graph_simulates(e->graph)) return true;
     e->host.brief = e->never_waits;
-    turn_back(e, frame);
-    if (!simulate_until(e, frame, again)) return false;
+    turn_to(e, frame);
+    *again = e->partly == frame;
+    bool done = simulate_until(e, frame, again);
+    e->partly = (double)NAN;
+    e->stepped = false;
+    if (!done) return false;
     e->host.hold = e->behind;
     *again = *again || e->behind; // what frames before it set is not to be set after it
+    return true;
+}
+
+bool effect_catch_up(effect *e, double frame, bool *more) {
+    *more = false;
+    if (!e->compiled || !graph_simulates(e->graph)) return true;
+    e->host.brief = true;
+    e->host.hold = false;
+    if (!e->stepped && !e->behind) effect_keep_snapshot(e, e->last_frame);
+    turn_to(e, frame);
+    double next = next_frame(e, frame);
+    *more = next < frame || !is_near(e, time_of(e, frame));
+    if (!*more) return true;
+    if (e->stepped && e->partly != next) effect_keep_snapshot(e, next - 1);
+    if (!run_frame(e, next, e->partly == next)) return false;
+    e->stepped = true;
+    e->partly = next == frame || left(e, time_of(e, next)) > 0 ? next : (double)NAN;
     return true;
 }
 

@@ -35,10 +35,10 @@ static bool is_ready(const effect *e) {
            err_set("%s: nothing in it simulates, so it has no state to keep", e->file);
 }
 
-void effect_list_state(const effect *e, checkpoint_list *out) {
+void effect_list_state(const effect *e, double frame, checkpoint_list *out) {
     const pass_simulation *simulation;
     effect_clock *clock = arena_alloc(&out->memory, sizeof *clock);
-    clock->frame = e->last_frame;
+    clock->frame = frame;
     checkpoint_add(out, &(checkpoint_part){
                             .name = clock_name, .size = sizeof *clock, .width = 8, .bytes = clock});
     pass *p;
@@ -54,7 +54,7 @@ bool effect_save_state(effect *e, const char *path) {
         if (!isfinite(simulation->reached(p)))
             return err_set("%s: nothing is simulated yet: render a frame first", pass_label(p));
     }
-    effect_list_state(e, &list);
+    effect_list_state(e, e->last_frame, &list);
     bool done = checkpoint_save(path, e->device, list.parts, list.count);
     checkpoint_list_free(&list);
     return done;
@@ -72,6 +72,7 @@ static bool state_load(effect *e, checkpoint *c) {
     graph_reset_history(e->graph);
     e->has_last = false;
     e->last_frame = e->updated = clock.frame;
+    e->partly = (double)NAN;
     return true;
 }
 
