@@ -47,8 +47,12 @@ bool flow_state_list(flow *f, gpu *g, const char *label, const char *more, check
 bool flow_state_load(flow *f, gpu *g, const char *label, const char *more, checkpoint *c) {
     strbuf text = {0};
     flow_describe(&f->desc, more, &text);
+    // A reset goes back to the first buffers of each pair, into which the state is loaded.
+    const uint32_t current = f->current;
+    f->current = 0;
     const sim_state s = state_of(f, strbuf_text(&text));
     bool done = sim_state_load(&s, g, label, c);
+    if (!done) f->current = current;
     strbuf_free(&text);
     return done;
 }
