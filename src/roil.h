@@ -121,6 +121,9 @@ const char *roil_device_name(const roil *r);
 const char *roil_device_driver(const roil *r);
 bool roil_wants_preview(const roil *r); // its live pictures had better begin at less than full size
 bool roil_is_software(const roil *r);   // the device is the processor; false without one
+// Returns whether roil_show never waits for effects, with never_waits: a device draws the window,
+// another one like it the effects.
+bool roil_shows_apart(const roil *r);
 uint64_t roil_validation_messages(const roil *r);
 const char *roil_home(const roil *r); // the folder with shaders/ and scripts/
 // For effects that are loaded from now on: as `counters` and `reference` of roil_desc.
@@ -129,6 +132,10 @@ void roil_set_reference(roil *r, uint32_t samples);
 // Returns true when the device hangs or is gone. Nothing can be drawn any more: unload the effects
 // and call roil_destroy.
 bool roil_is_lost(const roil *r);
+// Returns how many pieces of work the effects' device has not finished. Never waits. Who asks again
+// and again finds a device that has finished nothing for roil_desc.timeout lost.
+uint64_t roil_pending(roil *r);
+void roil_give_up(roil *r); // what it works on takes too long: the device is then lost
 
 typedef struct roil_memory {
     uint64_t device, reserved; // bytes in use on the device, and allocated from the driver
@@ -212,6 +219,22 @@ typedef struct roil_simulation {
     const char *pass;    // the pass in trouble
 } roil_simulation;
 bool roil_get_simulation(const roil_effect *e, roil_simulation *out); // false: nothing simulates
+// Begins a part of the steps that simulations need to come to a frame, and returns at once. `more`
+// receives whether there was something to begin: the frame, drawn by roil_advance, would show an
+// earlier state. Snapshots are kept on the way. With roil_desc.never_waits.
+bool roil_catch_up(roil_effect *e, double frame, bool *more);
+// Lists the frames of which a window has kept a snapshot, in rising order.
+size_t roil_snapshots(const roil_effect *e, double *frames, size_t capacity);
+// A branch goes on from a state, whatever numbers are set afterwards, and has snapshots of its own.
+// roil_branch_begin makes one of the state after the last frame; NULL with a message: nothing
+// simulates, or there is no memory. roil_branch_leave takes the effect's snapshots, so that numbers
+// can be set without losing them. roil_branch_enter gives it those of a branch, which is gone then;
+// the next frame starts from them. NULL: from none. A branch outlives effects, not the roil.
+typedef struct roil_branch roil_branch;
+roil_branch *roil_branch_begin(roil_effect *e);
+roil_branch *roil_branch_leave(roil_effect *e);
+void roil_branch_enter(roil_effect *e, roil_branch *b);
+void roil_branch_destroy(roil_branch *b); // NULL is allowed
 void roil_restart(roil_effect *e); // simulations start from the beginning with the next frame
 
 // From now on roil_render brings simulations to a frame and draws no picture: for checkpoints.
@@ -557,6 +580,15 @@ typedef struct roil_texture roil_texture; // 8-bit sRGB with alpha, on the devic
 roil_texture *roil_texture_create(roil *r, uint32_t width, uint32_t height, const uint8_t *rgba);
 void roil_texture_destroy(roil *r, roil_texture *t); // NULL is allowed
 
+// A picture of an effect, kept to be shown again. It outlives the effect.
+typedef struct roil_still roil_still;
+// Keeps the picture of the last frame. Returns at once: the device makes it when it has drawn the
+// frame. NULL with a message: there is no picture, or no memory for another one.
+roil_still *roil_still_create(roil_effect *e);
+bool roil_still_ready(roil *r, roil_still *s); // it can be shown; never waits
+uint64_t roil_still_bytes(const roil_still *s);
+roil_still *roil_still_share(roil_still *s);     // the same one, to be destroyed once more
+void roil_still_destroy(roil *r, roil_still *s); // NULL is allowed
 // Reads a PNG picture and fits it into a size in pixels, 1 to 16384 each: it is made smaller and
 // cut to that aspect ratio. `rgba` must hold width * height * 4 bytes, rows from the top. Any
 // thread.
@@ -576,6 +608,10 @@ typedef struct roil_picture { // the content of a window
     uint32_t width, height;   // pixels
     float background[3];      // sRGB, 0 to 1
     roil_effect *effect;      // its last picture is shown; NULL: none
+    roil_still *still;        // is shown instead, nothing while it is not ready; NULL: `effect`
+    // With a still: another one, which is shown to the right of `split` (pixels). NULL: none is.
+    roil_still *beside;
+    float split;
     float view[4]; // left, top, right, bottom (pixels) of the area for it; its aspect ratio is kept
     const roil_vertex *vertices;
     const uint32_t *indices;

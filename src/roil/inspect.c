@@ -222,7 +222,8 @@ static bool make_kernel(roil *r, job *j) {
     bool volume = desc->depth > 0, whole = desc->format == GPU_R32U;
     const shader_define defines[] = {{"VOLUME", volume ? "1" : "0"}, {"WHOLE", whole ? "1" : "0"}};
     j->inspector = &r->view->inspect[volume][whole];
-    return view_make_compute(r, j->inspector, "view/inspect.comp", defines, COUNT_OF(defines));
+    return view_make_compute(r, r->device, j->inspector, "view/inspect.comp", defines,
+                             COUNT_OF(defines));
 }
 
 bool roil_inspect(roil_effect *e, const roil_inspection *how, roil_texture *target,
@@ -230,9 +231,9 @@ bool roil_inspect(roil_effect *e, const roil_inspection *how, roil_texture *targ
     roil *r = e->owner;
     view *v = view_get(r);
     graph_image image;
-    job j = {.target = target->image};
+    job j = {.target = view_drawn(r, target)};
     *texel = (roil_texel){0};
-    if (!v) return false;
+    if (!v || !j.target) return false;
     j.image = find_image(e, how, &image);
     if (!j.image || !inspection_check(how, gpu_image_get_desc(j.image)) || !make_kernel(r, &j) ||
         !make_probe(r, &v->probe, e, image))
@@ -243,5 +244,5 @@ bool roil_inspect(roil_effect *e, const roil_inspection *how, roil_texture *targ
     if (j.cursor) read_probe(&v->probe, frame, texel);
     bool done = inspection_draw(r, &j, how->mip) && (!j.cursor || send_probe(r, &v->probe, frame));
     bool ended = gpu_frame_end(r->device);
-    return done && ended;
+    return done && ended && view_bring(r, target);
 }

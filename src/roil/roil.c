@@ -60,6 +60,7 @@ static char *joined(const char *folder, const char *name) {
     return mem_copy(path, strlen(path) + 1);
 }
 
+// The device that can show the window comes first, and the effects' is the same one.
 static bool open_device(roil *r, const roil_desc *desc) {
     const roil_window_desc *window = desc->window;
     gpu_window shown = {0};
@@ -69,13 +70,19 @@ static bool open_device(roil *r, const roil_desc *desc) {
                              .create_surface = window->create_surface,
                              .user = window->user};
     r->window = window != NULL;
-    r->device = gpu_create(&(gpu_desc){.device = desc->device,
-                                       .cache_dir = r->cache,
-                                       .validate = desc->validate,
-                                       .window = window ? &shown : NULL,
-                                       .timeout = desc->timeout,
-                                       .waiting = desc->waiting,
-                                       .user = desc->user});
+    gpu_desc how = {.device = desc->device,
+                    .cache_dir = r->cache,
+                    .validate = desc->validate,
+                    .window = window ? &shown : NULL,
+                    .timeout = desc->timeout,
+                    .waiting = desc->waiting,
+                    .user = desc->user};
+    r->shown = r->device = gpu_create(&how);
+    if (!r->device || !r->never_waits || !gpu_get_profile(r->device)->shows_apart)
+        return r->device != NULL;
+    how.device = gpu_get_info(r->shown)->name;
+    how.window = NULL;
+    r->device = gpu_create(&how);
     return r->device != NULL;
 }
 
@@ -115,7 +122,8 @@ roil *roil_create(const roil_desc *desc) {
 void roil_destroy(roil *r) {
     if (!r || r->stuck) return;
     roil_free_view(r);
-    if (r->device) gpu_destroy(r->device);
+    if (r->shown != r->device) gpu_destroy(r->shown);
+    gpu_destroy(r->device);
     mem_free(r->home);
     mem_free(r->shaders);
     mem_free(r->scripts);
@@ -156,12 +164,25 @@ void roil_set_reference(roil *r, uint32_t samples) {
     r->reference = samples;
 }
 
+bool roil_shows_apart(const roil *r) {
+    return r->shown != r->device;
+}
+
 uint64_t roil_validation_messages(const roil *r) {
-    return r->device ? gpu_validation_messages(r->device) : 0;
+    uint64_t sum = r->device ? gpu_validation_messages(r->device) : 0;
+    return roil_shows_apart(r) ? sum + gpu_validation_messages(r->shown) : sum;
 }
 
 bool roil_is_lost(const roil *r) {
-    return r->device && gpu_is_lost(r->device);
+    return r->device && (gpu_is_lost(r->device) || gpu_is_lost(r->shown));
+}
+
+uint64_t roil_pending(roil *r) {
+    return r->device ? gpu_pending(r->device) : 0;
+}
+
+void roil_give_up(roil *r) {
+    if (r->device) gpu_give_up(r->device);
 }
 
 roil_memory roil_get_memory(const roil *r) {
@@ -172,9 +193,12 @@ roil_memory roil_get_memory(const roil *r) {
         out.largest[i].bytes = state.largest[i].bytes;
     }
     if (!r->device) return out;
-    gpu_memory_use use = gpu_get_memory_use(r->device);
-    out.device = use.used;
-    out.reserved = use.reserved;
+    gpu *const devices[] = {r->device, r->shown};
+    for (int i = 0; i < 1 + roil_shows_apart(r); i++) {
+        gpu_memory_use use = gpu_get_memory_use(devices[i]);
+        out.device += use.used;
+        out.reserved += use.reserved;
+    }
     return out;
 }
 
@@ -337,6 +361,44 @@ bool roil_get_simulation(const roil_effect *e, roil_simulation *out) {
     return any;
 }
 
+bool roil_catch_up(roil_effect *e, double frame, bool *more) {
+    return effect_catch_up(e->effect, frame, more);
+}
+
+size_t roil_snapshots(const roil_effect *e, double *frames, size_t capacity) {
+    return effect_list_snapshots(e->effect, frames, capacity);
+}
+
+struct roil_branch {
+    effect_branch *snapshots;
+};
+
+static roil_branch *branch_of(effect_branch *snapshots) {
+    if (!snapshots) return NULL;
+    roil_branch *b = mem_alloc(sizeof *b);
+    b->snapshots = snapshots;
+    return b;
+}
+
+roil_branch *roil_branch_begin(roil_effect *e) {
+    return branch_of(effect_branch_begin(e->effect));
+}
+
+roil_branch *roil_branch_leave(roil_effect *e) {
+    return branch_of(effect_branch_leave(e->effect));
+}
+
+void roil_branch_enter(roil_effect *e, roil_branch *b) {
+    effect_branch_enter(e->effect, b ? b->snapshots : NULL);
+    mem_free(b);
+}
+
+void roil_branch_destroy(roil_branch *b) {
+    if (!b) return;
+    effect_branch_destroy(b->snapshots);
+    mem_free(b);
+}
+
 void roil_restart(roil_effect *e) {
     effect_restart(e->effect);
 }
@@ -402,7 +464,8 @@ static double rate_of(roil_effect *e, const pass *p, double work) {
 
 static roil_readout speed_of(roil_effect *e, const pass *p) {
     double work = pass_get_simulation(p)->work(p);
-    if (work > 0 && e->frame) e->speed = rate_of(e, p, work);
+    bool known = e->frame && (!e->owner->never_waits || gpu_frame_done(e->owner->device, e->frame));
+    if (work > 0 && known) e->speed = rate_of(e, p, work);
     const char *name = pass_get_simulation(p)->work_name;
     return (roil_readout){pass_label(p), name ? name : "cell updates", "million/s", e->speed};
 }

@@ -10,6 +10,7 @@ typedef struct template_file template_file; // roil/template.c
 
 struct roil {
     gpu *device; // NULL: no_device
+    gpu *shown;  // what draws the window: `device`, or one beside it (profile.h: shows_apart)
     char *home, *shaders, *scripts, *cache;
     char *assets[EFFECT_MAX_ASSETS]; // of roil_desc and the environment
     size_t asset_count;

@@ -10,61 +10,30 @@
 #include <math.h>
 #include <string.h>
 
-// ---- textures ---------------------------------------------------------------------------------
-
-roil_texture *roil_texture_create(roil *r, uint32_t width, uint32_t height, const uint8_t *rgba) {
-    if (!r->device) {
-        err_set("no device: there are no textures");
-        return NULL;
-    }
-    gpu_image *image =
-        gpu_image_create(r->device, &(gpu_image_desc){.label = "texture",
-                                                      .format = GPU_RGBA8,
-                                                      .width = width,
-                                                      .height = height,
-                                                      .use = GPU_USE_SAMPLED | GPU_USE_STORAGE});
-    if (!image) return NULL;
-    size_t size = (size_t)width * height * 4;
-    uint8_t *none = rgba ? NULL : mem_alloc(size);
-    bool done = gpu_image_write(r->device, image, 0, rgba ? rgba : none, size);
-    mem_free(none);
-    if (!done) {
-        gpu_image_destroy(r->device, image);
-        return NULL;
-    }
-    roil_texture *t = mem_alloc(sizeof *t);
-    t->image = image;
-    return t;
-}
-
-void roil_texture_destroy(roil *r, roil_texture *t) {
-    if (!t) return;
-    gpu_image_destroy(r->device, t->image);
-    mem_free(t);
-}
-
-// ---- the effect -------------------------------------------------------------------------------
-
-static bool make_canvas(roil *r, view *v, uint32_t width, uint32_t height) {
-    const gpu_image_desc *old = v->canvas ? gpu_image_get_desc(v->canvas) : NULL;
+static bool make_image(roil *r, gpu_image **image, const char *label, uint32_t width,
+                       uint32_t height, unsigned use) {
+    const gpu_image_desc *old = *image ? gpu_image_get_desc(*image) : NULL;
     if (old && old->width == width && old->height == height) return true;
-    gpu_image_destroy(r->device, v->canvas);
-    v->canvas = gpu_image_create(
-        r->device, &(gpu_image_desc){.label = "window",
-                                     .format = GPU_RGBA8,
-                                     .width = width,
-                                     .height = height,
-                                     .use = GPU_USE_SAMPLED | GPU_USE_STORAGE | GPU_USE_TARGET});
-    return v->canvas != NULL;
+    gpu_image_destroy(r->shown, *image);
+    *image = gpu_image_create(r->shown,
+                              &(gpu_image_desc){.label = label,
+                                                .format = GPU_RGBA8,
+                                                .width = width,
+                                                .height = height,
+                                                .use = use | GPU_USE_SAMPLED | GPU_USE_STORAGE});
+    return *image != NULL;
 }
 
-// Returns the picture of the effect. NULL when none was rendered, or when its texels are integers.
-static gpu_image *find_picture(roil_effect *e) {
-    if (!e || !e->frame) return NULL;
-    graph_image output = effect_get_picture(e->effect, EFFECT_OUTPUT);
-    gpu_image *picture = graph_get_image(effect_graph(e->effect), output);
-    return picture && gpu_image_get_desc(picture)->format != GPU_R32U ? picture : NULL;
+// What lies below the interface is kept, for it changes more rarely.
+static bool make_canvas(roil *r, view *v, uint32_t width, uint32_t height) {
+    const gpu_image *before = v->below;
+    bool done = make_image(r, &v->below, "window, below", width, height, 0) &&
+                make_image(r, &v->canvas, "window", width, height, GPU_USE_TARGET);
+    if (v->below != before) v->picture = NULL;
+    return done;
 }
+
+// ---- the picture ------------------------------------------------------------------------------
 
 // Fits the picture into the middle of the view with its aspect ratio: left, top, width, height in
 // whole pixels. The width is 0 when there is no room.
@@ -80,25 +49,45 @@ static void fit_picture(const gpu_image *picture, const float space[4], int32_t 
     out[1] = (int32_t)floorf(space[1] + (height - (float)out[3]) / 2);
 }
 
-typedef struct compose_block { // std140, as compose.comp has it
-    float background[4];
-    int32_t place[4];
-} compose_block;
+typedef struct shown { // stills, or the effect's own picture; NULL: none
+    gpu_image *picture, *other;
+    bool kept; // they never change, so what was made of them holds
+} shown;
 
-static bool compose_picture(roil *r, view *v, const roil_picture *p) {
-    const float *color = p->background;
-    compose_block block = {.background = {color[0], color[1], color[2], 1}};
-    gpu_image *picture = find_picture(p->effect);
-    if (picture) fit_picture(picture, p->view, block.place);
+static bool compose(roil *r, view *v, const roil_picture *p, const shown *what) {
     kernel *k = &v->compose;
-    kernel_bind(k, N_View, (gpu_binding){.uniform = &block, .uniform_size = sizeof block});
+    kernel_bind(k, N_View,
+                (gpu_binding){.uniform = &v->composed, .uniform_size = sizeof v->composed});
     kernel_bind(k, N_srgb, (gpu_binding){.image = v->srgb_fine, .sampler = GPU_NEAREST_CLAMP});
     kernel_bind(k, N_noise, (gpu_binding){.image = v->noise, .sampler = GPU_NEAREST_CLAMP});
-    kernel_bind_image(k, N_picture, picture ? picture : v->white);
-    kernel_bind_image(k, N_canvas, v->canvas);
-    gpu_pass_begin(r->device, "window");
-    bool done = kernel_run(k, r->device, p->width, p->height, 1);
-    gpu_pass_end(r->device);
+    kernel_bind_image(k, N_picture, what->picture ? what->picture : v->white);
+    kernel_bind_image(k, N_other, what->other ? what->other : v->white);
+    kernel_bind_image(k, N_canvas, v->below);
+    return kernel_run(k, r->shown, p->width, p->height, 1);
+}
+
+static compose_block block_of(const roil_picture *p, const shown *what) {
+    const float *color = p->background;
+    compose_block block = {.background = {color[0], color[1], color[2], 1}, .split = {INT32_MAX}};
+    if (what->picture) fit_picture(what->picture, p->view, block.place);
+    if (what->other) fit_picture(what->other, p->view, block.beside);
+    if (p->beside) block.split[0] = (int32_t)fminf(fmaxf(p->split, 0), 1e6f);
+    return block;
+}
+
+static bool compose_picture(roil *r, view *v, const roil_picture *p, const shown *what) {
+    compose_block block = block_of(p, what);
+    gpu_pass_begin(r->shown, "window");
+    bool done = true;
+    if (!what->kept || v->picture != what->picture || v->other != what->other ||
+        memcmp(&block, &v->composed, sizeof block) != 0) {
+        v->composed = block;
+        done = compose(r, v, p, what);
+        v->picture = what->kept && done ? what->picture : NULL;
+        v->other = what->other;
+    }
+    done = done && gpu_image_copy(r->shown, v->below, v->canvas);
+    gpu_pass_end(r->shown);
     return done;
 }
 
@@ -123,10 +112,10 @@ static bool check_triangles(const roil_picture *p) {
 // not allocate in every frame.
 static bool reserve_buffer(roil *r, gpu_buffer **buffer, const char *label, size_t size) {
     if (*buffer && gpu_buffer_size(*buffer) >= size) return true;
-    uint64_t most = gpu_get_info(r->device)->max_storage_range, wanted = size + size / 2 + 65536;
-    gpu_buffer_destroy(r->device, *buffer);
+    uint64_t most = gpu_get_info(r->shown)->max_storage_range, wanted = size + size / 2 + 65536;
+    gpu_buffer_destroy(r->shown, *buffer);
     *buffer = gpu_buffer_create(
-        r->device,
+        r->shown,
         &(gpu_buffer_desc){.label = label, .size = wanted < most || size > most ? wanted : most});
     return *buffer != NULL;
 }
@@ -136,8 +125,8 @@ static bool upload_triangles(roil *r, view *v, const roil_picture *p) {
     size_t indices = p->index_count * sizeof *p->indices;
     return reserve_buffer(r, &v->vertices, "vertices of the window", vertices) &&
            reserve_buffer(r, &v->indices, "indices of the window", indices) &&
-           gpu_buffer_write(r->device, v->vertices, 0, p->vertices, vertices) &&
-           gpu_buffer_write(r->device, v->indices, 0, p->indices, indices);
+           gpu_buffer_write(r->shown, v->vertices, 0, p->vertices, vertices) &&
+           gpu_buffer_write(r->shown, v->indices, 0, p->indices, indices);
 }
 
 // Clips a rectangle to the canvas in whole pixels. False when nothing is left.
@@ -180,12 +169,12 @@ static bool draw_overlay(roil *r, view *v, const roil_picture *p) {
     gpu_draw *draws = mem_alloc(p->draw_count * sizeof *draws);
     gpu_binding(*bindings)[GPU_MAX_SLOTS] = mem_alloc(p->draw_count * sizeof *bindings);
     size_t count = make_draws(v, p, size, draws, bindings);
-    gpu_pass_begin(r->device, "interface");
-    bool done = !count || gpu_draw_all(r->device, &(gpu_draw_desc){.pipeline = v->overlay.pipeline,
-                                                                   .colors = {v->canvas},
-                                                                   .draws = draws,
-                                                                   .draw_count = count});
-    gpu_pass_end(r->device);
+    gpu_pass_begin(r->shown, "interface");
+    bool done = !count || gpu_draw_all(r->shown, &(gpu_draw_desc){.pipeline = v->overlay.pipeline,
+                                                                  .colors = {v->canvas},
+                                                                  .draws = draws,
+                                                                  .draw_count = count});
+    gpu_pass_end(r->shown);
     mem_free(draws);
     mem_free(bindings);
     return done;
@@ -193,22 +182,47 @@ static bool draw_overlay(roil *r, view *v, const roil_picture *p) {
 
 // ---- showing ----------------------------------------------------------------------------------
 
+static gpu_image *image_of(roil *r, roil_still *s) {
+    return s && roil_still_ready(r, s) ? s->image : NULL;
+}
+
+// The effect's own picture, which on another device is waited for.
+static bool find_own(roil *r, view *v, roil_effect *e, shown *out) {
+    out->picture = view_picture(e);
+    if (!out->picture || !roil_shows_apart(r)) return true;
+    roil_still_destroy(r, v->own);
+    v->own = roil_still_create(e);
+    if (!v->own || !view_wait(r, v->own)) return false;
+    *out = (shown){.picture = v->own->image, .kept = true};
+    return true;
+}
+
+static bool find_shown(roil *r, view *v, const roil_picture *p, shown *out) {
+    *out = (shown){0};
+    if (!p->still && !p->beside) return find_own(r, v, p->effect, out);
+    out->picture = image_of(r, p->still);
+    out->other = image_of(r, p->beside);
+    out->kept = out->picture != NULL;
+    return !gpu_is_lost(r->device);
+}
+
 bool roil_show(roil *r, const roil_picture *p) {
     if (p->width == 0 || p->height == 0) return true; // minimised
     view *v = view_get(r);
+    shown what;
     if (!v || !check_triangles(p) ||
-        !view_make_compute(r, &v->compose, "view/compose.comp", NULL, 0) ||
+        !view_make_compute(r, r->shown, &v->compose, "view/compose.comp", NULL, 0) ||
         !view_make_overlay(r, &v->overlay) || !make_canvas(r, v, p->width, p->height) ||
-        !gpu_frame_begin(r->device))
+        !find_shown(r, v, p, &what) || !gpu_frame_begin(r->shown))
         return false;
-    bool done = compose_picture(r, v, p) && draw_overlay(r, v, p) &&
-                (!r->window || gpu_present(r->device, v->canvas));
-    bool ended = gpu_frame_end(r->device);
+    bool done = compose_picture(r, v, p, &what) && draw_overlay(r, v, p) &&
+                (!r->window || gpu_present(r->shown, v->canvas));
+    bool ended = gpu_frame_end(r->shown);
     return done && ended;
 }
 
 bool roil_read_shown(roil *r, uint8_t *out) {
     if (!r->view || !r->view->canvas) return err_set("nothing has been shown yet");
     const gpu_image_desc *size = gpu_image_get_desc(r->view->canvas);
-    return gpu_image_read(r->device, r->view->canvas, out, (size_t)size->width * size->height * 4);
+    return gpu_image_read(r->shown, r->view->canvas, out, (size_t)size->width * size->height * 4);
 }

@@ -96,14 +96,15 @@ bool roil_slices_draw(roil_effect *e, const roil_slices_view *how, roil_texture 
     gpu_image *image =
         p && slices_view_check(how) ? pass_slices_look(p, (int)how->field, &channel) : NULL;
     if (!image || !view_get(r) ||
-        !view_make_compute(r, &r->view->slices, "view/slices.comp", NULL, 0))
+        !view_make_compute(r, r->device, &r->view->slices, "view/slices.comp", NULL, 0))
         return false;
     float count = (float)pass_slices_get_desc(p)->count;
     const slices_block block = {
         .scale = {1 / how->range, ((float)how->slice + 0.5f) / count, how->arrows},
         .field = {(int32_t)how->field, channel},
     };
-    return slices_view_draw(r, image, &block, target->image);
+    gpu_image *drawn = view_drawn(r, target);
+    return drawn && slices_view_draw(r, image, &block, drawn) && view_bring(r, target);
 }
 
 bool roil_slices_greatest(roil_effect *e, const roil_slices_view *how, float *out) {

@@ -42,9 +42,9 @@ static bool view_fill(roil *r, view *v) {
         &(shader_library_desc){.shader_root = r->shaders, .cache_dir = cached ? cache : NULL});
     if (!v->library) return false;
     v->srgb = make_image(r->device, "srgb", GPU_R8, ROIL_SRGB_STEPS + 1, 1, roil_srgb_table());
-    v->srgb_fine = make_fine_table(r->device);
-    v->noise = make_noise(r->device);
-    v->white = make_image(r->device, "white", GPU_RGBA8, 1, 1, white);
+    v->srgb_fine = make_fine_table(r->shown);
+    v->noise = make_noise(r->shown);
+    v->white = make_image(r->shown, "white", GPU_RGBA8, 1, 1, white);
     return v->srgb && v->srgb_fine && v->noise && v->white;
 }
 
@@ -59,16 +59,26 @@ view *view_get(roil *r) {
     return r->view;
 }
 
+static void free_images(gpu *g, gpu_image *const *images, size_t count) {
+    for (size_t i = 0; i < count; i++) gpu_image_destroy(g, images[i]);
+}
+
 void roil_free_view(roil *r) {
     view *v = r->view;
     if (!v) return;
-    gpu_image *images[] = {v->srgb, v->srgb_fine, v->noise, v->white, v->canvas, v->probe.texel};
-    gpu_buffer *buffers[] = {v->vertices, v->indices, v->probe.readback};
-    kernel *kernels[] = {&v->compose,       &v->overlay,       &v->slices,       &v->inspect[0][0],
-                         &v->inspect[0][1], &v->inspect[1][0], &v->inspect[1][1]};
-    for (size_t i = 0; i < COUNT_OF(images); i++) gpu_image_destroy(r->device, images[i]);
-    for (size_t i = 0; i < COUNT_OF(buffers); i++) gpu_buffer_destroy(r->device, buffers[i]);
-    for (size_t i = 0; i < COUNT_OF(kernels); i++) kernel_destroy(kernels[i], r->device);
+    gpu_image *shown[] = {v->srgb_fine, v->noise, v->white, v->canvas, v->below};
+    gpu_image *drawn[] = {v->srgb, v->probe.texel};
+    kernel *looks[] = {&v->slices, &v->inspect[0][0], &v->inspect[0][1], &v->inspect[1][0],
+                       &v->inspect[1][1]};
+    roil_still_destroy(r, v->own);
+    free_images(r->shown, shown, COUNT_OF(shown));
+    free_images(r->device, drawn, COUNT_OF(drawn));
+    gpu_buffer_destroy(r->shown, v->vertices);
+    gpu_buffer_destroy(r->shown, v->indices);
+    gpu_buffer_destroy(r->device, v->probe.readback);
+    kernel_destroy(&v->compose, r->shown);
+    kernel_destroy(&v->overlay, r->shown);
+    for (size_t i = 0; i < COUNT_OF(looks); i++) kernel_destroy(looks[i], r->device);
     shader_library_destroy(v->library);
     arena_free(&v->memory);
     mem_free(v);
@@ -82,8 +92,8 @@ static const char *const files[] = {"view/compose.comp", "view/inspect.comp", "v
                                     "view/overlay.vert", "view/overlay.frag"};
 const kernel_table view_kernel_table = {{names, COUNT_OF(names)}, files, COUNT_OF(files)};
 
-bool view_make_compute(roil *r, kernel *k, const char *file, const shader_define *defines,
-                       size_t define_count) {
+bool view_make_compute(roil *r, gpu *device, kernel *k, const char *file,
+                       const shader_define *defines, size_t define_count) {
     const kernel_source source = {
         .label = file,
         .stages = {{.name = file,
@@ -94,7 +104,7 @@ bool view_make_compute(roil *r, kernel *k, const char *file, const shader_define
         .names = view_kernel_table.names,
     };
     return k->pipeline || (kernel_compile(k, r->view->library, &r->view->memory, &source) &&
-                           kernel_build(k, r->device));
+                           kernel_build(k, device));
 }
 
 bool view_make_overlay(roil *r, kernel *k) {
@@ -107,5 +117,5 @@ bool view_make_overlay(roil *r, kernel *k) {
     };
     const gpu_graphics_desc target = {.colors = {GPU_RGBA8}, .blend = true};
     return k->pipeline || (kernel_compile(k, r->view->library, &r->view->memory, &source) &&
-                           kernel_build_drawn(k, r->device, target));
+                           kernel_build_drawn(k, r->shown, target));
 }

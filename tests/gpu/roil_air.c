@@ -134,6 +134,83 @@ static void a_window_goes_back_by_a_second_at_most(void **state) {
     roil_destroy(window);
 }
 
+// Steps without pictures, in parts; returns how many.
+static int catch_up(roil_effect *e, double frame) {
+    int parts = 0;
+    for (bool more = true; more; parts += more) ok(roil_catch_up(e, frame, &more));
+    return parts;
+}
+
+// To a frame of a time that was simulated a window goes, back and forth, by a second of steps.
+static void a_window_catches_up_without_pictures(void **state) {
+    enum { FPS = 10, LAST = 41, BACK = 14 };
+    picture whole, back, again;
+    roil_effect *a = open(*state, FPS, "", UPDATE);
+    for (int frame = 1; frame <= LAST; frame++) draw(a, frame, frame <= BACK ? back : whole);
+    roil_unload(a);
+    roil *window = roil_create(
+        &(roil_desc){.home = getenv("ROIL_SOURCE_DIR"), .validate = true, .never_waits = true});
+    ok(window);
+    roil_effect *b = open(window, FPS, "", UPDATE);
+    int all = catch_up(b, LAST);
+    draw_whole(b, LAST, again);
+    is_same(whole, again, 0);
+    int less = catch_up(b, BACK);
+    draw_whole(b, BACK, again);
+    is_same(back, again, 0);
+    int forth = catch_up(b, LAST);
+    draw_whole(b, LAST, again);
+    is_same(whole, again, 0);
+    if (!(all > LAST / 2 && less <= FPS && forth <= FPS))
+        fail_msg("%d parts, then %d and %d", all, less, forth);
+    roil_unload(b);
+    test_messages += roil_validation_messages(window);
+    roil_destroy(window);
+}
+
+static const char LIFT[] =
+    "local fx = effect { name = 'lift', fps = 24, frames = 240 }\n"
+    "local lift = param { 'lift', 0.4, min = 0, max = 4, unit = 'm/s' }\n"
+    "local air = slices { count = 1, size = {32, 32}, height = 2, variation = 0 }\n"
+    "air:inflow { shape = disc { 0.5, 0.15, radius = 0.12 }, density = 1, velocity = {0, lift} }\n"
+    "fx.output = shader { 'slice.comp', value = air.density }.color\n"
+    "return fx\n";
+
+// Where a hand goes to another frame while steps to an earlier one are under way.
+static void a_window_changes_its_mind(void **state) {
+    picture whole, again;
+    char path[512];
+    (void)state;
+    roil *window = roil_create(
+        &(roil_desc){.home = getenv("ROIL_SOURCE_DIR"), .validate = true, .never_waits = true});
+    ok(window);
+    write_text("slice.comp", SLICE, path);
+    roil_effect *e = load_text(window, "lift.lua", LIFT);
+    ok(roil_prepare(e, WIDE, HIGH));
+    catch_up(e, 20);
+    draw_whole(e, 20, again);
+    roil_branch *b = roil_branch_begin(e);
+    ok(b);
+    roil_branch_enter(e, b);
+    draw_whole(e, 20, again);
+    ok(roil_set(e, "lift", "3.6"));
+    draw_whole(e, 20, again);
+    draw_whole(e, 21, whole);
+    for (int parts = 0; parts < 4; parts++) {
+        bool more;
+        draw_whole(e, 1, again);
+        ok(roil_set(e, "lift", "2")); // what was simulated is forgotten, but for where it began
+        ok(roil_set(e, "lift", "3.6"));
+        for (int i = 0; i < parts; i++) ok(roil_catch_up(e, 14, &more));
+        ok(roil_catch_up(e, 21, &more));
+        draw_whole(e, 21, again);
+        is_same(whole, again, 0);
+    }
+    roil_unload(e);
+    test_messages += roil_validation_messages(window);
+    roil_destroy(window);
+}
+
 // ---- what it tells ----------------------------------------------------------------------------
 
 static void it_tells_of_itself(void **state) {
@@ -352,6 +429,8 @@ int main(void) {
         cmocka_unit_test(another_size_of_the_picture_changes_nothing),
         cmocka_unit_test(a_window_catches_up_over_several_pictures),
         cmocka_unit_test(a_window_goes_back_by_a_second_at_most),
+        cmocka_unit_test(a_window_catches_up_without_pictures),
+        cmocka_unit_test(a_window_changes_its_mind),
         cmocka_unit_test(air_that_is_too_fast_is_held_back_by_itself),
         cmocka_unit_test(air_that_was_held_back_in_passing_is_told),
         cmocka_unit_test(nothing_that_is_given_bursts_it),
