@@ -1,6 +1,6 @@
 // Lets the user move the camera: dragging and the wheel over the picture set the controls
 // camera.eye and camera.target, which survive a reload like any other control.
-#include "app/live.h"
+#include "app/branches.h"
 #include <math.h>
 #include <stdio.h>
 
@@ -31,6 +31,7 @@ static void put_down(live *l) {
     set_point(l, "camera.eye", camera.eye);
     set_point(l, "camera.target", camera.target);
     l->camera_moved = true;
+    branches_forget(l);
 }
 
 static float aspect_of(const live *l) {
@@ -90,6 +91,7 @@ void camera_reset(live *l) {
     if (!l->effect) return;
     live_reset(l, "camera.eye");
     live_reset(l, "camera.target");
+    branches_forget(l);
     reset_lens(l);
     l->camera_moved = false;
 }

@@ -1,8 +1,11 @@
 // roil live EFFECT.lua ...: a window in which an effect is tuned while it runs.
+#include "app/branches.h"
 #include "app/device_options.h"
+#include "app/drawing.h"
 #include "app/live.h"
 #include "app/opening.h"
 #include "app/recent.h"
+#include "app/render_queue.h"
 #include "app/restart.h"
 #include "app/start.h"
 #include "app/window.h"
@@ -21,7 +24,7 @@
 #include <unistd.h>
 
 typedef struct job {
-    const char *file, *preview, *after_hang;
+    const char *file, *preview, *after_hang, *stats;
     app_settings settings;
     app_device device;
     uint32_t width, height;
@@ -75,6 +78,8 @@ static bool live_parse(job *j, int argc, const char **argv, poptContext *context
         {"paused", '\0', POPT_ARG_NONE, &j->paused, 0, "do not play at once", NULL},
         {"preview", '\0', POPT_ARG_STRING, &j->preview, 0,
          "size of the picture: full, half, quarter (default: that of the last time)", "SIZE"},
+        {"stats", '\0', POPT_ARG_STRING, &j->stats, 0,
+         "write how often the window was drawn and how soon it answered", "FILE.json"},
         {"hidden-panel", '\0', POPT_ARG_NONE, &j->hidden_panel, 0, "show the picture alone", NULL},
         app_device_rows(&j->device),
         {"after-hang", '\0', POPT_ARG_STRING | POPT_ARGFLAG_DOC_HIDDEN, &j->after_hang, 0, NULL,
@@ -121,6 +126,9 @@ static int run_window(live *l, window *w, const job *j) {
                  session_file(layout, sizeof layout, "layout.ini") ? layout : NULL))
         return app_fail_input();
     ui_on_key(on_key, l);
+    l->drawing = drawing_create();
+    l->branches = branches_create();
+    l->queue = render_queue_create();
     l->performance = performance_create();
     l->inspector = inspector_create();
     l->flow_tools = flow_tools_create();
@@ -129,6 +137,8 @@ static int run_window(live *l, window *w, const job *j) {
     l->graph = graph_view_create();
     take_session(l, j);
     bool done = live_loop(l, w);
+    drawing_end(l);
+    render_queue_destroy(l->queue);
     restart_disarm();
     window_keep(w, &l->session);
     session_save(&l->session);
@@ -137,7 +147,9 @@ static int run_window(live *l, window *w, const job *j) {
         fflush(NULL);
         _exit(APP_DONE);
     }
-    int status = done ? APP_DONE : app_fail_input();
+    int status = done && (!j->stats || pulse_save(&l->pulse, j->stats, drawing_count(l)))
+                     ? APP_DONE
+                     : app_fail_input();
     if (done && l->effect && l->pictures > 0) recent_add(l->file, l->effect);
     write_back_close(l);
     undo_free(&l->undo);
@@ -147,6 +159,8 @@ static int run_window(live *l, window *w, const job *j) {
     flow_tools_destroy(l->flow_tools, l->r);
     inspector_destroy(l->inspector, l->r);
     performance_destroy(l->performance);
+    branches_destroy(l->branches, l->r);
+    drawing_destroy(l->drawing, l->r);
     ui_close();
     return status;
 }

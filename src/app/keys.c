@@ -1,11 +1,15 @@
 // The keys of the live window: one table, which F1 shows.
-#include "app/live.h"
+#include "app/branches.h"
+#include "app/drawing.h"
+#include "app/render_queue.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include <GLFW/glfw3.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+
+static const double ENDLESS = 1, TIMES = 2; // seconds of a frame, and times the one before
 
 // ---- what they do -----------------------------------------------------------------------------
 
@@ -18,17 +22,14 @@ static void key_play(live *l) {
 
 static void key_seek(live *l, double frame) {
     timeline_seek(&l->time, frame);
-    l->dirty = true;
 }
 
 static void step_back(live *l) {
     timeline_step(&l->time, -1);
-    l->dirty = true;
 }
 
 static void step_on(live *l) {
     timeline_step(&l->time, 1);
-    l->dirty = true;
 }
 
 static void go_first(live *l) {
@@ -45,7 +46,7 @@ static void key_restart(live *l) {
     if (!l->effect || (!hears && !roil_get_simulation(l->effect, &simulation))) return;
     if (hears) live_reset(l, "effect.events"); // what hands have done
     roil_restart(l->effect);
-    l->dirty = true;
+    live_redraw(l);
     live_notice(l, hears ? "Restarted without clicks and keys" : "Simulation restarted");
 }
 
@@ -130,7 +131,8 @@ static void key_quit(live *l) {
 // Goes back to the time that a simulation has reached. False: none is behind.
 static bool stop_simulating(live *l) {
     roil_simulation s;
-    if (!l->effect || !roil_get_simulation(l->effect, &s) || !s.waiting || !isfinite(s.reached))
+    if (!l->effect || !drawing_is_behind(l) || !roil_get_simulation(l->effect, &s) ||
+        !isfinite(s.reached))
         return false;
     l->time.playing = false;
     key_seek(l, fmax(l->time.from, floor(l->time.first + s.reached * l->time.fps + 1e-6)));
@@ -138,10 +140,23 @@ static bool stop_simulating(live *l) {
     return true;
 }
 
+// A frame that goes on and on: its device is given up, and the program starts anew without it. One
+// that takes no longer than the one before it is waited for.
+static void stop_drawing(live *l) {
+    double frame, seconds, usual;
+    if (!drawing_is_busy(l, &frame, &seconds, &usual)) return;
+    l->time.playing = false;
+    if (seconds < fmax(ENDLESS, TIMES * usual)) return;
+    roil_give_up(l->r);
+    live_break(l, roil_error());
+}
+
 static void close_top(live *l) {
     if (stop_simulating(l)) return;
     if (l->help)
         l->help = false;
+    else if (render_queue_close(l))
+        return;
     else if (l->writing)
         write_back_close(l);
     else if (l->undo_list)
@@ -152,8 +167,10 @@ static void close_top(live *l) {
         l->session.inspector = false;
     else if (l->session.graph)
         l->session.graph = false;
-    else
+    else if (l->session.performance)
         l->session.performance = false;
+    else
+        stop_drawing(l);
 }
 
 // Saves under the first free name of a series, since a key cannot ask and must not replace a file.
@@ -191,6 +208,9 @@ static const live_key keys[] = {
     {GLFW_KEY_END, 0, "End", "last frame of the range", go_last},
     {GLFW_KEY_L, 0, "L", "start again at the end, or stop", loop},
     {GLFW_KEY_BACKSPACE, 0, "Backspace", "restart without clicks and keys", key_restart},
+    {GLFW_KEY_B, 0, "B", "branch off from this frame", branches_fork},
+    {GLFW_KEY_X, 0, "X", "the next branch", branches_next},
+    {GLFW_KEY_C, 0, "C", "compare two branches side by side", branches_compare},
     {GLFW_KEY_F, 0, "F", "frame the volume", camera_frame},
     {GLFW_KEY_R, 0, "R", "camera of the effect file", camera_reset},
     {GLFW_KEY_H, 0, "H", "handles in the picture, to be dragged", key_handles},
@@ -206,6 +226,7 @@ static const live_key keys[] = {
     {GLFW_KEY_N, 0, "N", "the graph: passes, their times and images", key_graph},
     {GLFW_KEY_S, 0, "S", "see, push and capture the flow of slices", slices},
     {GLFW_KEY_P, 0, "P", "performance", performance_key},
+    {GLFW_KEY_R, GLFW_MOD_CONTROL, "Ctrl+R", "render pictures or a video", render_queue_open},
     {GLFW_KEY_F12, 0, "F12", "save the picture as PNG", shot},
     {GLFW_KEY_Z, GLFW_MOD_CONTROL, "Ctrl+Z", "undo", live_undo},
     {GLFW_KEY_Y, GLFW_MOD_CONTROL, "Ctrl+Y", "do again", live_redo},
@@ -220,7 +241,7 @@ static const live_key keys[] = {
     {GLFW_KEY_EQUAL, GLFW_MOD_CONTROL, "Ctrl+=", "larger letters and widgets", larger},
     {GLFW_KEY_MINUS, GLFW_MOD_CONTROL, "Ctrl+-", "smaller ones", smaller},
     {GLFW_KEY_F1, 0, "F1", "this help", help},
-    {GLFW_KEY_ESCAPE, 0, "Esc", "stop simulating; close what lies on top", close_top},
+    {GLFW_KEY_ESCAPE, 0, "Esc", "stop what works, or close what lies on top", close_top},
     {GLFW_KEY_Q, GLFW_MOD_CONTROL, "Ctrl+Q", "quit", key_quit},
 };
 

@@ -1,6 +1,9 @@
-// The loop of the live window: takes changed files, advances time, draws the effect when anything
-// changed, draws the interface over it, and presents the result. It sleeps while nothing moves.
-#include "app/live.h"
+// The loop of the live window: takes changed files, advances time, has the effect drawn when
+// anything changed, draws the interface over its picture, and presents the result. It sleeps while
+// nothing moves.
+#include "app/branches.h"
+#include "app/drawing.h"
+#include "app/render_queue.h"
 #include "app/restart.h"
 #include "app/window.h"
 #include "base/clock.h"
@@ -22,20 +25,26 @@ static const double SETTLE = 0.7;  // seconds after an input in which widgets ma
 enum { SETTLE_FRAMES = 4 };        // and frames, however long they take: menus close, values follow
 static const double STEADY = 0.12; // seconds that a size must last before pictures are made for it
 static const double TICK = 1 / 60.0, BLINK = 0.25, LONG = 600;
-enum { MAX_PICTURE = 16384, MOST_SAMPLES = 65536 };
+// Seconds from one picture of the window to the next while a frame is at work, which needs the
+// processor too: where something moves, and where only the sign of it does.
+static const double LIVELY = 1 / 36.0, CALM = 1 / 10.0;
+static const double POLL = 0.004; // seconds after which the device is asked whether it is done
+enum { MAX_PICTURE = 16384 };
 
 typedef struct loop {
     window *w;
     roil_picture picture;
-    double last, drawn_at; // clock_seconds
+    double last;   // clock_seconds when the last turn began ...
+    double showed; // ... and the last one that showed something
+    double polled; // ... and when input was asked for last
+    double late;   // seconds that passed while a frame was at work, if all are to be drawn
     double awake_until;
     int awake_frames;
     uint32_t wanted[2]; // size of the picture by now, and since when
     double wanted_since;
     uint64_t reloads;
-    bool drawn;   // the effect has a picture
-    double frame; // of it
-    bool logged;  // that the first frame was shown
+    bool shot;   // the picture has its size for a shot
+    bool logged; // that the first frame was shown
     bool minimized;
 } loop;
 
@@ -52,6 +61,7 @@ void live_notice(live *l, const char *format, ...) {
 
 void live_redraw(live *l) {
     l->dirty = true;
+    drawing_forget(l);
     if (!l->held) l->broken = NULL;
 }
 
@@ -66,7 +76,7 @@ void live_break(live *l, const char *why) {
 
 // ---- following the files ----------------------------------------------------------------------
 
-static void take_over(live *l, loop *p) {
+static void take_over(live *l) {
     bool first = !l->effect;
     l->effect = roil_live_effect(l->follow);
     roil_effect_info info = roil_get_info(l->effect);
@@ -81,7 +91,8 @@ static void take_over(live *l, loop *p) {
     l->camera_moved = false;     // the hand takes it up anew
     if (!first) l->held = false; // a file has changed
     live_redraw(l);
-    p->drawn = p->drawn && !first;
+    if (first) drawing_lose(l, false);
+    branches_reload(l);
     log_write(LOG_DEBUG, "live: took over, %.0f ms after the change",
               roil_live_counts(l->follow).last * 1000);
 }
@@ -91,7 +102,7 @@ static void loop_follow_files(live *l, loop *p) {
     const char *message = roil_live_message(l->follow);
     uint64_t reloads = roil_live_counts(l->follow).reloads;
     if (message) log_write(LOG_DEBUG, "live: %s", message);
-    if (reloads != p->reloads) take_over(l, p);
+    if (reloads != p->reloads) take_over(l);
     changes_take_over(l); // also of a file that failed: nothing waits for it
     p->reloads = reloads;
     restart_arm(l);
@@ -107,7 +118,7 @@ static uint32_t picture_size(float view, float scale) {
 // While the user resizes the window the old picture is stretched, because preparing a new one takes
 // time.
 static void loop_resize(live *l, loop *p, double now) {
-    float scale = live_previews[l->session.preview].scale;
+    float scale = l->shot ? 1 : live_previews[l->session.preview].scale;
     uint32_t width = picture_size(l->view.right - l->view.left, scale);
     uint32_t height = picture_size(l->view.bottom - l->view.top, scale);
     if (width != p->wanted[0] || height != p->wanted[1]) {
@@ -116,70 +127,36 @@ static void loop_resize(live *l, loop *p, double now) {
         p->wanted_since = now;
     }
     if ((width == l->width && height == l->height) || (l->effect && l->held)) return;
-    if (p->drawn && now - p->wanted_since < STEADY) return;
+    if (drawing_is_there(l) && now - p->wanted_since < STEADY) return;
     l->width = width;
     l->height = height;
-    if (!l->effect) return; // it will be prepared for that size
-    p->drawn = false;
-    if (roil_prepare(l->effect, width, height))
-        live_redraw(l);
-    else
-        live_break(l, roil_error());
+    if (!l->effect) return;         // it will be prepared for that size
+    bool kept = l->shot || p->shot; // after a shot the size is as before, and so is what is kept
+    p->shot = l->shot;
+    drawing_lose(l, kept);
+    if (!kept) live_redraw(l);
+    l->dirty = true;
+    if (!roil_prepare(l->effect, width, height)) live_break(l, roil_error());
 }
 
-// Returns whether another picture of the same frame would have more samples of a reference, up to a
-// limit.
-static bool gathers(const live *l) {
-    uint32_t samples = roil_samples(l->effect);
-    return samples > 0 && samples < MOST_SAMPLES;
-}
+// ---- time -------------------------------------------------------------------------------------
 
-// Returns whether a simulation has not reached the picture's time.
-static bool simulates(const live *l) {
-    roil_simulation simulation;
-    return roil_get_simulation(l->effect, &simulation) && simulation.waiting;
-}
-
-// Returns whether a simulation, or a frame of a sequence, was too late for the picture.
-static bool waits(const live *l) {
-    roil_playback playback;
-    return simulates(l) || (roil_get_playback(l->effect, &playback) && playback.waiting);
-}
-
-static void draw_effect(live *l, loop *p) {
-    double start = clock_seconds(), frame = l->time.frame;
-    bool back = p->drawn && frame < p->frame; // what passes remember is of later times: begin anew
-    if (!(back ? roil_render : roil_advance)(l->effect, frame)) {
-        live_break(l, roil_error());
-        return;
-    }
-    double end = clock_seconds();
-    log_write(LOG_DEBUG, "live: drew frame %g", frame);
-    l->dirty = gathers(l) || waits(l);
-    p->drawn = true;
-    l->pictures++;
-    p->frame = frame;
-    performance_add(l->performance, l->effect, end - start, start - p->drawn_at);
-    p->drawn_at = start;
-}
-
-static bool can_draw(const live *l) {
-    return l->effect && !l->broken && !l->held;
-}
-
+// Time that a simulation cannot keep up with passes more slowly. Where every frame is to be shown,
+// that during a frame passes after it.
 static void loop_advance(live *l, loop *p, double seconds) {
+    double frame, taken, usual;
     if (l->held && l->time.playing) {
         l->held = false;
         live_redraw(l);
         restart_arm(l);
     }
-    // Time that a simulation cannot keep up with passes more slowly.
-    if (can_draw(l) && simulates(l)) seconds = 0;
-    bool moved = l->effect && timeline_advance(&l->time, seconds);
+    bool waits = l->time.every && drawing_is_busy(l, &frame, &taken, &usual);
+    seconds += p->late;
+    p->late = waits ? seconds : 0;
+    if (waits || (drawing_is_behind(l) && !l->broken)) seconds = 0;
+    if (l->effect) timeline_advance(&l->time, seconds);
     if (l->broken && !l->held && l->time.frame != l->broken_frame)
         l->broken = NULL; // another time may do
-    if (can_draw(l) && (moved || l->dirty)) draw_effect(l, p);
-    if (can_draw(l) && p->drawn) inspector_update(l); // also while time stands still
 }
 
 // ---- screenshot -------------------------------------------------------------------------------
@@ -192,10 +169,16 @@ static void shot_name(const live *l, int number, char *out, size_t capacity) {
     snprintf(out, capacity, "%.*s-%.6g%s.png", length, name, l->time.frame, again);
 }
 
-static void take_shot(live *l, const loop *p) {
-    if (l->effect && p->drawn && waits(l)) return; // for the frame that it is named after
+static bool is_full_size(const live *l) {
+    return l->width == picture_size(l->view.right - l->view.left, 1) &&
+           l->height == picture_size(l->view.bottom - l->view.top, 1);
+}
+
+// Waits for the frame that it is named after, at the size of the window.
+static void take_shot(live *l) {
+    if (l->effect && !l->broken && !l->held && !(is_full_size(l) && drawing_is_whole(l))) return;
     l->shot = false;
-    if (!l->effect || !p->drawn) return;
+    if (!l->effect || !drawing_is_there(l)) return;
     char file[PATH_CAP];
     int number = 1;
     do shot_name(l, number++, file, sizeof file);
@@ -205,9 +188,8 @@ static void take_shot(live *l, const loop *p) {
         return;
     }
     log_write(LOG_DEBUG, "live: wrote %s", file);
-    live_notice(l,
-                "Saved %s, %u x %u pixels (preview: %s); `roil render --from` draws it in any size",
-                file, l->width, l->height, live_previews[l->session.preview].name);
+    live_notice(l, "Saved %s, %u x %u pixels; `roil render --from` draws it in any size", file,
+                l->width, l->height);
 }
 
 // ---- interface --------------------------------------------------------------------------------
@@ -234,16 +216,17 @@ static layout lay_out(live *l, uint32_t width, uint32_t height) {
     return out;
 }
 
-static void draw_interface(live *l, const loop *p, const layout *at, uint32_t width) {
+static void draw_interface(live *l, const layout *at, uint32_t width) {
     ui_canvas view = ui_bare(l->view);
     ui_mark("view", l->view);
-    if (!handles_input(l, &view)) {
+    if (!branches_input(l, &view) && !handles_input(l, &view)) {
         camera_input(l, &view);
         event_input(l, &view);
     }
-    if (p->drawn) handles_draw(l);
-    if (p->drawn) probe_draw(l, &view);
+    if (drawing_is_there(l)) handles_draw(l);
+    if (drawing_is_there(l) && !drawing_works(l)) probe_draw(l, &view);
     status_draw(l, l->view);
+    branches_draw(l);
     if (!l->session.panel_hidden) {
         timeline_draw(l, at->bar);
         if (at->has_panel) {
@@ -258,6 +241,7 @@ static void draw_interface(live *l, const loop *p, const layout *at, uint32_t wi
         performance_draw(l);
         changes_draw(l);
         write_back_draw(l);
+        render_queue_draw(l);
     }
     overlay_draw(l, l->view);
     help_draw(l);
@@ -285,24 +269,37 @@ static bool loop_show(live *l, loop *p, uint32_t width, uint32_t height) {
     out->width = width;
     out->height = height;
     for (int i = 0; i < 3; i++) out->background[i] = 0.071f;
-    out->effect = p->drawn ? l->effect : NULL;
+    drawing_show(l, out);
+    branches_show(l, out);
     memcpy(out->view, &l->view, sizeof out->view);
     if (!roil_show(l->r, out)) return false;
     log_write(LOG_DEBUG, "live: shown");
-    if (p->drawn && !p->logged) log_write(LOG_DEBUG, "live: first frame after %.2f s", age());
-    p->logged = p->logged || p->drawn;
+    bool drawn = out->still || out->effect;
+    if (drawn && !p->logged) log_write(LOG_DEBUG, "live: first frame after %.2f s", age());
+    p->logged = p->logged || drawn;
     return true;
 }
 
 // ---- loop -------------------------------------------------------------------------------------
 
+static bool at_work(const live *l) {
+    double frame, taken, usual;
+    return drawing_is_busy(l, &frame, &taken, &usual) || drawing_is_behind(l);
+}
+
+// Returns the seconds until the window is drawn again although the effects' device is at work.
+static double time_to_show(const live *l, const loop *p, double now) {
+    bool moves = l->time.playing || now < p->awake_until || p->awake_frames > 0 || ui_pending();
+    return fmax(p->showed + (moves ? LIVELY : CALM) - now, 0);
+}
+
 static double time_to_sleep(const live *l, const loop *p, double now) {
-    bool drawing = can_draw(l);
-    if (p->minimized) return LONG;
-    if (ui_pending() || p->awake_frames > 0 || (drawing && l->dirty) || graph_view_busy(l))
-        return 0;
+    bool wanted = drawing_is_wanted(l);
     double most = LONG;
-    if (drawing && l->time.playing) {
+    if (p->minimized) return LONG;
+    if (at_work(l)) return roil_shows_apart(l->r) ? fmin(time_to_show(l, p, now), POLL) : 0;
+    if (ui_pending() || p->awake_frames > 0 || wanted || graph_view_busy(l)) return 0;
+    if (l->effect && !l->broken && !l->held && l->time.playing) {
         double rate = l->time.fps * fabs(l->time.speed);
         if (l->time.smooth || !(rate > 0)) return 0;
         most = fmin((1 - fabs(l->time.owed)) / rate, most);
@@ -310,20 +307,48 @@ static double time_to_sleep(const live *l, const loop *p, double now) {
     if (!l->held && (p->wanted[0] != l->width || p->wanted[1] != l->height))
         most = fmin(most, TICK);
     if (now < p->awake_until || l->notice[0]) most = fmin(most, TICK);
-    if (ui_wants_keys()) most = fmin(most, BLINK);
+    if (ui_wants_keys() || render_queue_runs(l)) most = fmin(most, BLINK);
     return fmax(most, 0);
 }
 
 static bool loop_turn(live *l, loop *p) {
     double most = time_to_sleep(l, p, clock_seconds());
     bool woken = window_wait(most) && most > 0;
+    if (ui_pending()) pulse_ask(&l->pulse, woken ? clock_seconds() : p->polled);
+    p->polled = clock_seconds();
     if (woken || ui_pending()) {
-        p->awake_until = clock_seconds() + SETTLE;
+        p->awake_until = p->polled + SETTLE;
         p->awake_frames = SETTLE_FRAMES;
-    } else if (p->awake_frames > 0) {
-        p->awake_frames--;
     }
     return !window_closing(p->w) && !l->quit;
+}
+
+// What looks at the effect's own picture.
+static void look(live *l) {
+    if (!drawing_is_there(l)) return;
+    if (!l->broken && !l->held) inspector_update(l);
+    flow_tools_update(l);
+    graph_view_update(l);
+}
+
+// Has what is wanted drawn, and uses the effect while nothing is at work.
+static void loop_draw(live *l, loop *p, double now, double passed) {
+    bool apart = roil_shows_apart(l->r);
+    double frame, seconds = 0, usual;
+    drawing_is_busy(l, &frame, &seconds, &usual);
+    window_tell_busy(l->window, seconds);
+    if (drawing_finish(l)) {
+        loop_resize(l, p, now);
+        loop_follow_files(l, p);
+        branches_update(l);
+        if (apart) look(l);
+    }
+    loop_advance(l, p, passed);
+    drawing_begin(l);
+    if (drawing_finish(l)) {
+        if (!apart) look(l);
+        if (l->shot) take_shot(l);
+    }
 }
 
 bool live_loop(live *l, window *w) {
@@ -331,6 +356,8 @@ bool live_loop(live *l, window *w) {
     bool playing = false;
     while (loop_turn(l, &p)) {
         double now = clock_seconds(), passed = playing ? now - p.last : 0;
+        uint64_t drawn = drawing_count(l);
+        pulse_turn(&l->pulse, now - p.last, at_work(l));
         uint32_t width, height;
         p.last = now;
         window_pixels(w, &width, &height);
@@ -342,22 +369,24 @@ bool live_loop(live *l, window *w) {
         ui_set_scale(window_scale(w) * l->session.scale);
         ui_set_contrast(l->session.contrast);
         layout at = lay_out(l, width, height);
-        loop_resize(l, &p, now);
-        loop_follow_files(l, &p);
-        loop_advance(l, &p, passed);
+        loop_draw(l, &p, now, passed);
+        render_queue_update(l);
         playing = l->time.playing;
-        if (p.drawn) inspector_update(l);
-        if (p.drawn) flow_tools_update(l);
-        if (p.drawn) graph_view_update(l);
-        if (l->shot) take_shot(l, &p);
+        if (roil_shows_apart(l->r) && at_work(l) && drawing_count(l) == drawn &&
+            time_to_show(l, &p, now) > 0)
+            continue;
+        p.showed = now;
+        if (p.awake_frames > 0) p.awake_frames--;
+        if (p.awake_frames == 0 && drawing_count(l) != drawn) p.awake_frames = 1; // values follow
         ui_begin();
         undo_frame(&l->undo, ui_held());
-        draw_interface(l, &p, &at, width);
+        draw_interface(l, &at, width);
         ui_end(&p.picture);
         if (roil_is_lost(l->r) || !loop_show(l, &p, width, height)) {
             if (!l->broken) live_break(l, roil_error());
             return false;
         }
+        pulse_show(&l->pulse, clock_seconds(), at_work(l));
     }
     return true;
 }

@@ -3,6 +3,7 @@
 #pragma once
 #include "app/app.h"
 #include "app/orbit.h"
+#include "app/pulse.h"
 #include "app/timeline.h"
 #include "app/undo.h"
 #include "ui/ui.h"
@@ -27,13 +28,16 @@ typedef struct live_session { // what is restored at the next start; session.c
     int preview;    // index in live_previews; -1: never chosen
 } live_session;
 
-typedef struct performance performance; // performance.c
-typedef struct inspector inspector;     // inspector.c
-typedef struct flow_tools flow_tools;   // flow_tools.c
-typedef struct panel panel;             // panel.c
-typedef struct handles handles;         // handles.c
-typedef struct graph_view graph_view;   // graph_view.c
-typedef struct write_back write_back;   // write_back.c
+typedef struct branches branches;         // branches.h
+typedef struct drawing drawing;           // drawing.h
+typedef struct performance performance;   // performance.c
+typedef struct inspector inspector;       // inspector.c
+typedef struct flow_tools flow_tools;     // flow_tools.c
+typedef struct panel panel;               // panel.c
+typedef struct render_queue render_queue; // render_queue.h
+typedef struct write_back write_back;     // write_back.c
+typedef struct handles handles;           // handles.c
+typedef struct graph_view graph_view;     // graph_view.c
 
 typedef struct live_probe { // what was found under the pointer last; probe.c
     roil_probed found;
@@ -52,7 +56,7 @@ typedef struct live {
     orbit camera;
     bool camera_moved; // by the user: `camera` is used, else the script's
     double start;      // frame to begin with; NAN: the effect's first
-    bool dirty;        // the picture must be drawn again even if time stands still
+    bool dirty;        // the picture of now must be drawn again
     live_session session;
     bool help;
     bool quit, shot; // requested by a key
@@ -64,6 +68,10 @@ typedef struct live {
     double broken_frame; // the frame that failed; another one is tried
     bool held;           // after a hang: nothing is drawn until a file changes or the user plays
     const char *broken;  // why no frame can be drawn, besides roil_live_message; NULL: it can be
+    pulse pulse;
+    drawing *drawing;
+    branches *branches;
+    render_queue *queue;
     performance *performance;
     inspector *inspector;
     flow_tools *flow_tools;

@@ -1,5 +1,6 @@
 // Messages over the picture: why the newest file cannot be shown or a number was clamped, and short
 // notices.
+#include "app/drawing.h"
 #include "app/label.h"
 #include "app/live.h"
 #include "app/text_wrap.h"
@@ -10,7 +11,8 @@
 // Units; those of the style that a card's size follows from.
 static const float PADDING = 12, SPACING = 6, MONO_SIZE = 0.92f;
 static const float MARGIN = 24, CARD_WIDTH = 900, CARD_SHARE = 0.7f; // of the view's height
-static const double SURE = 1; // seconds after which a rate is told
+static const double SURE = 1;      // seconds after which a rate is told
+static const double NOTICED = 0.3; // seconds of a frame that are told
 enum { MAX_TEXT = 4096 };
 
 static const char *message_of(const live *l) {
@@ -69,7 +71,9 @@ static float draw_card(const card *c, ui_rect view) {
 
 // ---- notice -------------------------------------------------------------------------------------
 
-static void draw_notice(const char *text, ui_rect view, float bottom) {
+// `part` of the work that it tells of is done; below 0: it tells of none. Returns where there is
+// room for another notice above it.
+static float draw_notice(const char *text, float part, ui_rect view, float bottom) {
     float s = ui_scale(), height = label_height() + 12 * s;
     char line[sizeof((live *)NULL)->notice];
     snprintf(line, sizeof line, "%.*s", (int)text_split(text).head_length, text);
@@ -77,6 +81,12 @@ static void draw_notice(const char *text, ui_rect view, float bottom) {
     float left = floorf((view.left + view.right - width) / 2), top = floorf(bottom - height);
     ui_fill((ui_rect){left, top, left + width, bottom}, ui_rgba(UI_PANEL, 0.92f), height / 2);
     label_within(left + 16 * s, top + 6 * s, width - 32 * s, ui_rgba(UI_TEXT, 1), line);
+    if (part < 0) return top - SPACING * s;
+    ui_rect bar = {left + 16 * s, bottom - 4 * s, left + width - 16 * s, bottom - 2 * s};
+    ui_fill(bar, ui_rgba(UI_LINE, 1), s);
+    bar.right = bar.left + (bar.right - bar.left) * fminf(part, 1);
+    ui_fill(bar, ui_rgba(UI_ACCENT, 1), s);
+    return top - SPACING * s;
 }
 
 static void draw_waiting(const live *l, bool broken, ui_rect view) {
@@ -106,23 +116,39 @@ static double time_left(live *l, double reached, double time) {
 }
 
 // Prints how far a simulation is behind, or what is wrong with it. False: neither.
-static bool say_simulation(live *l, char *out, size_t capacity) {
+static bool say_simulation(live *l, char *out, size_t capacity, float *part) {
     roil_simulation s;
+    bool behind = drawing_is_behind(l);
+    if (!behind) l->behind.since = 0;
     if (!l->effect || !roil_get_simulation(l->effect, &s)) return false;
     double time = timeline_seconds(&l->time);
-    bool tells = s.waiting && isfinite(s.reached);
+    bool tells = behind && isfinite(s.reached);
     double left = tells ? time_left(l, s.reached, time) : (double)NAN;
-    if (!s.waiting) l->behind.since = 0;
+    *part = !behind ? -1 : tells && time > 0 ? (float)(s.reached / time) : 0;
     if (tells && left >= 1)
         snprintf(out, capacity, "Simulating: %.2f of %.2f s, %.0f s left; Esc stops", s.reached,
                  time, left);
     else if (tells)
         snprintf(out, capacity, "Simulating: %.2f of %.2f s", s.reached, time);
-    else if (s.waiting)
+    else if (behind)
         snprintf(out, capacity, "Simulating");
     else if (s.trouble)
         snprintf(out, capacity, "%s: %s", s.pass, s.trouble);
-    return s.waiting || s.trouble;
+    return behind || s.trouble;
+}
+
+// Prints what is at work, if that takes long enough to be noticed. False: it does not.
+static bool say_work(const live *l, char *out, size_t capacity, float *part) {
+    double frame, seconds, usual;
+    if (!drawing_is_busy(l, &frame, &seconds, &usual) || fmax(seconds, usual) < NOTICED)
+        return false;
+    bool longer = seconds > usual; // than the last one, so that nobody knows
+    *part = longer ? 1 : (float)(seconds / usual);
+    if (longer)
+        snprintf(out, capacity, "Drawing frame %.6g: %.1f s", frame, seconds);
+    else
+        snprintf(out, capacity, "Drawing frame %.6g: %.1f of some %.1f s", frame, seconds, usual);
+    return true;
 }
 
 void overlay_draw(live *l, ui_rect view) {
@@ -135,9 +161,11 @@ void overlay_draw(live *l, ui_rect view) {
         bottom = draw_card(&(card){"message", UI_ERROR, message, hint_of(l)}, view);
     else if (warning)
         bottom = draw_card(&(card){"warning", UI_WARNING, warning, NULL}, view);
-    char simulation[640];
-    if (l->notice[0])
-        draw_notice(l->notice, view, bottom);
-    else if (say_simulation(l, simulation, sizeof simulation))
-        draw_notice(simulation, view, bottom);
+    char text[640];
+    float part = -1;
+    if (say_simulation(l, text, sizeof text, &part) || say_work(l, text, sizeof text, &part)) {
+        ui_mark("work", view);
+        bottom = draw_notice(text, part, view, bottom);
+    }
+    if (l->notice[0]) draw_notice(l->notice, -1, view, bottom);
 }

@@ -2,6 +2,7 @@
 #include "app/history.h"
 #include "app/label.h"
 #include "app/live.h"
+#include "base/clock.h"
 #include "base/memory.h"
 #include <inttypes.h>
 #include <math.h>
@@ -9,7 +10,7 @@
 #include <string.h>
 
 // Units.
-static const float WIDTH = 440, HEIGHT = 532; // of the window
+static const float WIDTH = 440, HEIGHT = 554; // of the window
 static const float PLOT_HEIGHT = 120, NAME_WIDTH = 124, MS_WIDTH = 74, SHARE_WIDTH = 46, ROW = 22;
 static const float FRAME_MS = 16.7f; // of a display that shows 60 pictures a second
 static const float IDLE_MS = 3000;   // between pictures: nothing wanted to be drawn
@@ -241,7 +242,7 @@ static void draw_facts(const live *l) {
     char text[128], failed[32] = "";
     roil_playback played;
     bool plays = l->effect && roil_get_playback(l->effect, &played);
-    ui_rect at = ui_canvas_begin("facts", 0, (plays ? 6 : 5) * ROW * ui_scale()).area;
+    ui_rect at = ui_canvas_begin("facts", 0, (plays ? 7 : 6) * ROW * ui_scale()).area;
     roil_memory memory = roil_get_memory(l->r);
     snprintf(text, sizeof text, "%.1f MiB, of %.0f MiB taken", (double)memory.device / MIB,
              (double)memory.reserved / MIB);
@@ -257,6 +258,10 @@ static void draw_facts(const live *l) {
     snprintf(text, sizeof text, "%" PRIu64 ", the last in %.0f ms%s", count.reloads,
              count.last * 1000, failed);
     fact(&at, "reloads", text);
+    pulse_answers answers = pulse_summarise(&l->pulse);
+    snprintf(text, sizeof text, "%.0f a second, answers in %.0f ms (95 %%: %.0f)",
+             pulse_rate(&l->pulse, clock_seconds()), answers.median, answers.p95);
+    fact(&at, "window", text);
     snprintf(text, sizeof text, "%u \u00d7 %u", l->width, l->height);
     fact(&at, "picture", text);
     fact(&at, "device", roil_device_name(l->r));

@@ -2,6 +2,8 @@
 //
 // The upper strip of the track is the range that is looped, with a handle at each end. Below it,
 // the pointer moves the current frame.
+#include "app/branches.h"
+#include "app/drawing.h"
 #include "app/label.h"
 #include "app/live.h"
 #include "app/track.h"
@@ -10,7 +12,10 @@
 
 // Units.
 static const float TRACK_HEIGHT = 38, STRIP = 10, INSET = 8, REACH = 7, LABEL_SPACE = 64;
-static const float SPEED_FROM = 450, SWITCHES_FROM = 640, RATE_FROM = 710; // of the bar's width
+static const float SPEED_FROM = 450, SWITCHES_FROM = 640, RATE_FROM = 710,
+                   BRANCHES_FROM = 780; // of the bar's width
+
+enum { SNAPSHOTS = 64 };
 
 typedef enum grab { GRAB_NONE, GRAB_FRAME, GRAB_FROM, GRAB_TO, GRAB_RANGE } grab;
 static struct {
@@ -21,9 +26,7 @@ static struct {
 // ---- scrubbing --------------------------------------------------------------------------------
 
 static void bar_seek(live *l, double frame) {
-    double before = l->time.frame;
     timeline_seek(&l->time, l->time.smooth ? frame : round(frame));
-    if (l->time.frame != before) l->dirty = true;
 }
 
 static grab grab_at(const timeline *t, const track *bar, const ui_canvas *c) {
@@ -90,6 +93,23 @@ static void draw_ticks(const timeline *t, const track *bar, ui_rect body) {
     }
 }
 
+// A bar over the frames that can be shown at once, and a mark for each snapshot of a simulation.
+static void draw_kept(const live *l, const track *bar, ui_rect body) {
+    float s = ui_scale(), top = body.bottom - 5 * s, bottom = body.bottom - 3 * s;
+    uint32_t color = ui_rgba(UI_ACCENT, 0.75f);
+    double first, last = l->time.first - 1;
+    while (drawing_find_kept(l, last + 1, &first, &last)) {
+        float left = track_x(bar, first - 0.5), right = track_x(bar, last + 0.5);
+        ui_fill((ui_rect){fmaxf(left, bar->left), top, fminf(right, bar->right), bottom}, color, 0);
+    }
+    double frames[SNAPSHOTS];
+    size_t count = roil_snapshots(l->effect, frames, SNAPSHOTS);
+    for (size_t i = 0; i < count && i < SNAPSHOTS; i++) {
+        float x = roundf(track_x(bar, frames[i])), y = body.top + 18 * s;
+        ui_triangle(x - 3 * s, y, x + 3 * s, y, x, y + 4 * s, ui_rgba(UI_TEXT, 0.7f));
+    }
+}
+
 static void draw_handle(float x, ui_rect strip, bool active) {
     float s = ui_scale();
     uint32_t color = ui_rgba(active ? UI_ACCENT : UI_TEXT, active ? 1 : 0.75f);
@@ -141,6 +161,7 @@ static void draw_track(live *l) {
     ui_fill(body, ui_rgba(UI_FIELD, 1), 4 * s);
     draw_ticks(t, &bar, body);
     draw_range(t, &bar, strip, body, &c);
+    draw_kept(l, &bar, body);
     draw_pointer(&bar, body, &c);
     draw_playhead(t, &bar, body);
     ui_canvas_end();
@@ -152,7 +173,6 @@ static void draw_buttons(live *l) {
     timeline *t = &l->time;
     if (ui_icon_button("start", UI_ICON_START, false, "To the start (Home)")) bar_seek(l, t->from);
     ui_same_line();
-    double before = t->frame;
     if (ui_icon_button("back", UI_ICON_BACK, false, "One frame back (Left)")) timeline_step(t, -1);
     ui_same_line();
     if (ui_icon_button("play", t->playing ? UI_ICON_PAUSE : UI_ICON_PLAY, t->playing,
@@ -161,7 +181,6 @@ static void draw_buttons(live *l) {
     ui_same_line();
     if (ui_icon_button("forward", UI_ICON_FORWARD, false, "One frame on (Right)"))
         timeline_step(t, 1);
-    if (t->frame != before) l->dirty = true;
     ui_same_line();
     if (ui_icon_button("end", UI_ICON_END, false, "To the end (End)")) bar_seek(l, t->to);
     ui_same_line();
@@ -238,6 +257,10 @@ static void draw_row(live *l) {
     if (units > SWITCHES_FROM) {
         ui_same_line();
         draw_switches(l);
+    }
+    if (units > BRANCHES_FROM) {
+        ui_same_line();
+        branches_draw_buttons(l);
     }
     if (units > RATE_FROM) {
         ui_same_line();

@@ -150,13 +150,18 @@ float window_scale(const window *w) {
     return x < 0.5f ? 0.5f : x > 4 ? 4 : x;
 }
 
-bool window_closing(window *w) {
-    if (w->busy) {
-        glfwSetWindowTitle(w->handle, w->title);
-        glfwSetInputMode(w->handle, GLFW_STICKY_KEYS, GLFW_FALSE);
-    }
-    w->busy = false;
+bool window_closing(const window *w) {
     return glfwWindowShouldClose(w->handle);
+}
+
+void window_tell_busy(window *w, double seconds) {
+    int whole = (int)seconds;
+    if (whole == w->busy) return;
+    char title[sizeof w->title + 64];
+    snprintf(title, sizeof title, "%s \u2013 busy for %d s (Escape stops)", w->title, whole);
+    glfwSetWindowTitle(w->handle, whole ? title : w->title);
+    glfwSetInputMode(w->handle, GLFW_STICKY_KEYS, GLFW_FALSE);
+    w->busy = whole;
 }
 
 bool window_wait(double seconds) {
@@ -174,11 +179,8 @@ static bool is_pressed(const window *w, int key) {
 }
 
 window_busy window_wait_busy(window *w, double seconds) {
-    char title[sizeof w->title + 64];
-    snprintf(title, sizeof title, "%s \u2013 busy for %.0f s (Escape stops)", w->title, seconds);
-    glfwSetWindowTitle(w->handle, title);
+    window_tell_busy(w, seconds);
     glfwSetInputMode(w->handle, GLFW_STICKY_KEYS, GLFW_TRUE); // a short press is seen, too
-    w->busy = true;
     glfwPollEvents();
     bool control = is_pressed(w, GLFW_KEY_LEFT_CONTROL) || is_pressed(w, GLFW_KEY_RIGHT_CONTROL);
     if (glfwWindowShouldClose(w->handle) || (is_pressed(w, GLFW_KEY_Q) && control))

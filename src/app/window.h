@@ -7,7 +7,7 @@ struct window {
     roil_window_desc desc; // for roil_create
     int held[4];           // x, y, width, height when it was not maximised
     char title[256];
-    bool busy; // the title says so
+    int busy; // seconds that the title says; 0: none
     void (*drop)(void *user, const char *path);
     void *drop_user;
 };
@@ -19,7 +19,8 @@ void window_close(window *w);
 void window_keep(window *w, live_session *s); // stores its size and position
 void window_pixels(const window *w, uint32_t *width, uint32_t *height); // 0 while minimised
 float window_scale(const window *w); // pixels per unit: 1, or more on a display of high density
-bool window_closing(window *w);      // also removes what window_wait_busy showed
+bool window_closing(const window *w);
+void window_tell_busy(window *w, double seconds); // in the title; less than 1: it is not
 // Handles events, or waits for one at most `seconds`. True when there was one.
 bool window_wait(double seconds);
 typedef enum window_busy { WINDOW_GOES_ON, WINDOW_GIVES_UP, WINDOW_QUIT } window_busy;

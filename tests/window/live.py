@@ -46,7 +46,7 @@ class Keys(Case):
         live.keys("End")
         live.expect(r"live: drew frame 48\b")
         live.keys("Home")
-        live.expect(r"live: drew frame 1\b")
+        live.expect(r"live: shows frame 1\b")  # its picture was kept
         live.keys("space")
         for frame in (2, 3):
             live.expect(r"live: drew frame ")
