@@ -55,7 +55,7 @@ class Handles(Case):
         for key, frame in (("Right", 2), ("Left", 1)):  # input is taken in order
             mark = live.mark()
             live.keys(key)
-            live.expect(rf"live: drew frame {frame}\b", mark)
+            live.expect(rf"live: (drew|shows) frame {frame}\b", mark)
         return [float(v) for v in [line for line in live.log if f"live: set {name} = " in line][-1].split("= ")[1].split(",")]
 
     def meter(self, live):
