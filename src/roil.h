@@ -1,6 +1,5 @@
-// roil: a runtime for volumetric effects. This header and those that it includes at its end,
-// roil_slices.h, roil_space.h and roil_graph.h, are the whole public interface of libroil. The
-// program `roil` is built on it and uses nothing else.
+// roil: a runtime for volumetric effects. This header and those that it includes at its end are the
+// whole public interface of libroil. The program `roil` is built on it and uses nothing else.
 //
 //   roil *r = roil_create(&(roil_desc){0});
 //   roil_effect *e = r ? roil_load(r, "effects/explosion.lua", NULL, 0) : NULL;
@@ -498,33 +497,6 @@ bool roil_write_preset(roil_effect *e, const char *name);
 // Lists the names of an effect's presets, sorted. Any thread.
 size_t roil_presets(const char *effect_file, char (*names)[64], size_t capacity);
 
-// ---- writing back: what was set becomes what the script's files say
-// ------------------------------ A value is put where the script writes it out, or, where it leaves
-// it open, at the end of the table. Comments and everything else in the files stay. What a script
-// computes is not replaced.
-
-typedef struct roil_edit {      // strings live as long as the edits
-    const char *controls;       // "march.steps, march.jitter"
-    const char *file;           // path; NULL: it cannot be written
-    int line;                   // from 1: the first of the lines that change
-    const char *before, *after; // these lines
-    const char *refusal;        // why it cannot be written; NULL: it can
-} roil_edit;
-typedef struct roil_edits roil_edits;
-// Finds what to write for a control, or, for NULL, for every control that was changed. Reads the
-// files. Free it with roil_edits_free. NULL with a message: there is no such control.
-roil_edits *roil_edits_create(roil_effect *e, const char *control);
-// The same for one that becomes a parameter of the script, with its value, range, unit and help:
-// steps = param { "march_steps", 64, min = 1, max = 4096 }. NULL with a message also for what can
-// be none.
-roil_edits *roil_edits_create_parameter(roil_effect *e, const char *control);
-size_t roil_edits_list(const roil_edits *x, roil_edit *out, size_t capacity);
-// Write the files, and write them as they were before. False with a message: a file is not what it
-// is supposed to be, and none was written; or one cannot be written.
-bool roil_edits_write(const roil_edits *x);
-bool roil_edits_undo(const roil_edits *x);
-void roil_edits_free(roil_edits *x); // NULL is allowed
-
 // ---- live: an effect that is rebuilt when its files change -------------------------------------
 
 typedef struct roil_live roil_live;
@@ -679,98 +651,6 @@ typedef struct roil_difference {
 // are. Needs no device. Any thread.
 bool roil_compare(const roil_comparison *how, roil_difference *out);
 
-// ---- export -----------------------------------------------------------------------------------
-
-typedef struct roil_export {
-    const char *pattern; // a .vdb file, or a glob of a sequence
-    const char *grid;    // exact name of a scalar grid; NULL: "density"
-    const char *type;    // "u8", "u16" (both scaled to the maximum), "f16" or "f32"; NULL: "u8"
-    const char *file;    // output: all frames in one file, x fastest, little-endian
-    // Called with the number of frames read and to be read; each is read twice. Returning false
-    // cancels the export, which then fails. May be NULL.
-    bool (*progress)(void *user, double done, double whole);
-    void *user; // passed to progress
-} roil_export;
-// Resamples every frame into the box that encloses the sequence. Returns a text that says how a
-// script reads the file (free it with roil_free), or NULL with a message. Any thread.
-char *roil_export_raw(const roil_export *desc);
-
-// Export of what fills space in an effect, sampled at voxels, as OpenVDB files.
-typedef struct roil_volume_desc {
-    // The name of a grid's variable ("air", "burst"), or of a pass whose medium it is ("march").
-    // NULL: the simulated grid, or else the medium of the first pass `march`.
-    const char *source;
-    const char *fields; // "density,velocity"; NULL: every field that it has or the effect samples
-    uint32_t size;      // voxels along the longest side, 1 to 1024; 0: that of the sampled grids
-    float box[2][3];    // minimum and maximum corner (m); equal: the grid's box, or the box that is
-                        // not empty in the frames `first` to `last`
-    double first, last; // frames
-    float tolerance;    // values up to it count as empty and are not stored
-    bool alone;         // do not draw the effect's pictures
-} roil_volume_desc;
-typedef struct roil_volume roil_volume;
-typedef struct roil_volume_info {
-    uint32_t size[3];
-    float voxel_size; // metres
-    char fields[256]; // "density, velocity"
-} roil_volume_info;
-// Call it after roil_load and before roil_prepare. The volume must be finished before roil_unload.
-roil_volume *roil_volume_create(roil_effect *e, const roil_volume_desc *desc);
-roil_volume_info roil_volume_get_info(const roil_volume *v);
-// Saves the last frame as a .vdb file: fog volumes of 16-bit floats, z up, metres, metres per
-// second. Reads the data back; another thread writes the file. Also returns false when an earlier
-// file failed.
-bool roil_volume_save(roil_volume *v, const char *file);
-bool roil_volume_finish(roil_volume *v); // waits for all files and frees `v`; NULL is allowed
-
-// Export of sheets: frames beside each other in one picture, and maps of what a renderer of sprites
-// cannot know, for engines that play them as flipbooks. They show the medium of one march alone,
-// before nothing: no mesh, sky, sprite or bloom. Alpha is 1 minus the medium's transmittance.
-typedef struct roil_sheet_desc {
-    const char *source; // name of a pass march; NULL: the first
-    // "color,motion,six-way,normal,depth,temperature", or some of these; NULL: "color"
-    const char *maps;
-    const char *light; // of the colour: "shown", tone-mapped by the effect's pass final, "scene",
-                       // before that and linear, or "both"; NULL: "shown"
-    uint32_t columns, rows; // 1 to 64 each; 0: 8
-    uint32_t cell;          // pixels along each side of a cell, 16 to 4096; 0: 256
-    uint32_t gutter; // pixels along the edges of a cell that the medium stays out of, below half
-    bool camera; // keep the effect's camera; else an orthographic one looks the same way and is set
-                 // so that all that can be seen fills the cells
-    double first, last; // frames that will be seen
-} roil_sheet_desc;
-typedef struct roil_sheet_options {
-    const char *engine; // whose signs, encodings and alpha: "unity", "unreal", "godot" or "labs";
-                        // NULL: none's
-    const char *format; // "png", "png16", "exr" or "tga"; NULL: by the name of the file
-    const char *alpha;  // "premultiplied", "straight" or "both"; NULL: as the engine wants it, else
-                        // premultiplied
-    bool crop;          // cut the cells to what is used in any
-    double fps;         // cells a second, above 0
-    double loop;        // seconds after which it repeats; 0: it does not
-    uint32_t count;     // cells that are used; 0: all
-    const char *page;   // .html file that plays the sheet; NULL: none
-    const char *const *notes; // lines for the description, such as how a loop was made
-    size_t note_count;
-} roil_sheet_options;
-typedef struct roil_sheet roil_sheet;
-// Call it after roil_load and before roil_prepare, which then takes the size of a cell; it sets the
-// effect's camera. NULL with a message, as where nothing says a velocity. Free it before the
-// effect.
-roil_sheet *roil_sheet_create(roil_effect *e, const roil_sheet_desc *desc);
-// Whether the medium of a march (NULL: the first) repeats by itself after so many seconds, as far
-// as what it is made of tells: curves and functions, phases and drifts of noise with a `period`.
-// Else `why` gets what does not, such as "the drift of 'worley' repeats every 2.5 s".
-bool roil_repeats(roil_effect *e, const char *source, double seconds, char *why, size_t capacity);
-// Adds the last frame to a cell, times a weight: cells to which several frames are added dissolve
-// from one to the other.
-bool roil_sheet_add(roil_sheet *s, uint32_t cell, double weight);
-// Writes "fire.png", "fire-motion.png" and so on, and what is in them as "fire.json". Only once.
-bool roil_sheet_save(roil_sheet *s, const char *file, const roil_sheet_options *options);
-// A sentence on what was written, after roil_sheet_save; valid until roil_sheet_free.
-const char *roil_sheet_summary(const roil_sheet *s);
-void roil_sheet_free(roil_sheet *s); // NULL is allowed
-
 // ---- reference --------------------------------------------------------------------------------
 // Texts for people, printed from the tables that the library itself uses. Each returns NULL with a
 // message on failure. Free them with roil_free.
@@ -811,6 +691,8 @@ void roil_free(void *text); // NULL is allowed
 }
 #endif
 
+#include "roil_edits.h"  // what was set, written into the script
+#include "roil_export.h" // volumes and sheets for other programs
 #include "roil_graph.h"  // passes and images, shown
 #include "roil_slices.h" // flows in slices, shown and changed
 #include "roil_space.h"  // where things are, and what moves them

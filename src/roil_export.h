@@ -1,0 +1,101 @@
+// Export: what an effect makes as files for other programs, volumes and sheets. Part of roil.h,
+// which includes it; its rules on errors, threads and memory hold here too.
+#pragma once
+#include "roil.h"
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct roil_export {
+    const char *pattern; // a .vdb file, or a glob of a sequence
+    const char *grid;    // exact name of a scalar grid; NULL: "density"
+    const char *type;    // "u8", "u16" (both scaled to the maximum), "f16" or "f32"; NULL: "u8"
+    const char *file;    // output: all frames in one file, x fastest, little-endian
+    // Called with the number of frames read and to be read; each is read twice. Returning false
+    // cancels the export, which then fails. May be NULL.
+    bool (*progress)(void *user, double done, double whole);
+    void *user; // passed to progress
+} roil_export;
+// Resamples every frame into the box that encloses the sequence. Returns a text that says how a
+// script reads the file (free it with roil_free), or NULL with a message. Any thread.
+char *roil_export_raw(const roil_export *desc);
+
+// Export of what fills space in an effect, sampled at voxels, as OpenVDB files.
+typedef struct roil_volume_desc {
+    // The name of a grid's variable ("air", "burst"), or of a pass whose medium it is ("march").
+    // NULL: the simulated grid, or else the medium of the first pass `march`.
+    const char *source;
+    const char *fields; // "density,velocity"; NULL: every field that it has or the effect samples
+    uint32_t size;      // voxels along the longest side, 1 to 1024; 0: that of the sampled grids
+    float box[2][3];    // minimum and maximum corner (m); equal: the grid's box, or the box that is
+                        // not empty in the frames `first` to `last`
+    double first, last; // frames
+    float tolerance;    // values up to it count as empty and are not stored
+    bool alone;         // do not draw the effect's pictures
+} roil_volume_desc;
+typedef struct roil_volume roil_volume;
+typedef struct roil_volume_info {
+    uint32_t size[3];
+    float voxel_size; // metres
+    char fields[256]; // "density, velocity"
+} roil_volume_info;
+// Call it after roil_load and before roil_prepare. The volume must be finished before roil_unload.
+roil_volume *roil_volume_create(roil_effect *e, const roil_volume_desc *desc);
+roil_volume_info roil_volume_get_info(const roil_volume *v);
+// Saves the last frame as a .vdb file: fog volumes of 16-bit floats, z up, metres, metres per
+// second. Reads the data back; another thread writes the file. Also returns false when an earlier
+// file failed.
+bool roil_volume_save(roil_volume *v, const char *file);
+bool roil_volume_finish(roil_volume *v); // waits for all files and frees `v`; NULL is allowed
+
+// Export of sheets: frames beside each other in one picture, and maps of what a renderer of sprites
+// cannot know, for engines that play them as flipbooks. They show the medium of one march alone,
+// before nothing: no mesh, sky, sprite or bloom. Alpha is 1 minus the medium's transmittance.
+typedef struct roil_sheet_desc {
+    const char *source; // name of a pass march; NULL: the first
+    // "color,motion,six-way,normal,depth,temperature", or some of these; NULL: "color"
+    const char *maps;
+    const char *light; // of the colour: "shown", tone-mapped by the effect's pass final, "scene",
+                       // before that and linear, or "both"; NULL: "shown"
+    uint32_t columns, rows; // 1 to 64 each; 0: 8
+    uint32_t cell;          // pixels along each side of a cell, 16 to 4096; 0: 256
+    uint32_t gutter; // pixels along the edges of a cell that the medium stays out of, below half
+    bool camera; // keep the effect's camera; else an orthographic one looks the same way and is set
+                 // so that all that can be seen fills the cells
+    double first, last; // frames that will be seen
+} roil_sheet_desc;
+typedef struct roil_sheet_options {
+    const char *engine; // whose signs, encodings and alpha: "unity", "unreal", "godot" or "labs";
+                        // NULL: none's
+    const char *format; // "png", "png16", "exr" or "tga"; NULL: by the name of the file
+    const char *alpha;  // "premultiplied", "straight" or "both"; NULL: as the engine wants it, else
+                        // premultiplied
+    bool crop;          // cut the cells to what is used in any
+    double fps;         // cells a second, above 0
+    double loop;        // seconds after which it repeats; 0: it does not
+    uint32_t count;     // cells that are used; 0: all
+    const char *page;   // .html file that plays the sheet; NULL: none
+    const char *const *notes; // lines for the description, such as how a loop was made
+    size_t note_count;
+} roil_sheet_options;
+typedef struct roil_sheet roil_sheet;
+// Call it after roil_load and before roil_prepare, which then takes the size of a cell; it sets the
+// effect's camera. NULL with a message, as where nothing says a velocity. Free it before the
+// effect.
+roil_sheet *roil_sheet_create(roil_effect *e, const roil_sheet_desc *desc);
+// Whether the medium of a march (NULL: the first) repeats by itself after so many seconds, as far
+// as what it is made of tells: curves and functions, phases and drifts of noise with a `period`.
+// Else `why` gets what does not, such as "the drift of 'worley' repeats every 2.5 s".
+bool roil_repeats(roil_effect *e, const char *source, double seconds, char *why, size_t capacity);
+// Adds the last frame to a cell, times a weight: cells to which several frames are added dissolve
+// from one to the other.
+bool roil_sheet_add(roil_sheet *s, uint32_t cell, double weight);
+// Writes "fire.png", "fire-motion.png" and so on, and what is in them as "fire.json". Only once.
+bool roil_sheet_save(roil_sheet *s, const char *file, const roil_sheet_options *options);
+// A sentence on what was written, after roil_sheet_save; valid until roil_sheet_free.
+const char *roil_sheet_summary(const roil_sheet *s);
+void roil_sheet_free(roil_sheet *s); // NULL is allowed
+
+#ifdef __cplusplus
+}
+#endif
