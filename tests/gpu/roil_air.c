@@ -142,16 +142,19 @@ static int catch_up(roil_effect *e, double frame) {
 }
 
 // To a frame of a time that was simulated a window goes, back and forth, by a second of steps.
+// In single precision: in half precision graphics cards round a step that writes images otherwise
+// than one that does not, so that it shows where submissions end.
 static void a_window_catches_up_without_pictures(void **state) {
     enum { FPS = 10, LAST = 41, BACK = 14 };
+    static const char SINGLE[] = "precision = 'f32'";
     picture whole, back, again;
-    roil_effect *a = open(*state, FPS, "", UPDATE);
+    roil_effect *a = open(*state, FPS, SINGLE, UPDATE);
     for (int frame = 1; frame <= LAST; frame++) draw(a, frame, frame <= BACK ? back : whole);
     roil_unload(a);
     roil *window = roil_create(
         &(roil_desc){.home = getenv("ROIL_SOURCE_DIR"), .validate = true, .never_waits = true});
     ok(window);
-    roil_effect *b = open(window, FPS, "", UPDATE);
+    roil_effect *b = open(window, FPS, SINGLE, UPDATE);
     int all = catch_up(b, LAST);
     draw_whole(b, LAST, again);
     is_same(whole, again, 0);
@@ -161,7 +164,8 @@ static void a_window_catches_up_without_pictures(void **state) {
     int forth = catch_up(b, LAST);
     draw_whole(b, LAST, again);
     is_same(whole, again, 0);
-    if (!(all > LAST / 2 && less <= FPS && forth <= FPS))
+    const int second = all * FPS / LAST + 1;
+    if (!(all > LAST / 2 && less <= second && forth <= second))
         fail_msg("%d parts, then %d and %d", all, less, forth);
     roil_unload(b);
     test_messages += roil_validation_messages(window);
