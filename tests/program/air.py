@@ -1,7 +1,7 @@
 """Simulated air by the program: a plume rises, its readouts and times are told, mistakes are named."""
 import json
 
-from lib.pictures import Png
+from lib.pictures import Png, packed_pixels
 from lib.program import Case, main
 
 EFFECT = """
@@ -59,7 +59,7 @@ class Air(Case):
                          "mesh { 'ball.obj' }"):
             self.write("effect.lua", EFFECT.replace("fx.camera", f"air:collider {{ {collider} }}\nfx.camera", 1) % "")
             self.succeeds("render", "effect.lua", "--frames", "12", *SMALL, "-o", "o.png")
-            pictures.append(self.read("o.png"))
+            pictures.append(packed_pixels(self.read("o.png")))
         self.assertEqual(pictures[0], pictures[1])
         self.assertNotEqual(pictures[0], pictures[2])
         self.write("effect.lua", EFFECT.replace("fx.camera", f"air:source {{ mesh {{ 'ball.obj', position = {path} }}, "

@@ -1,6 +1,7 @@
 """Bad effect files: the message names file and line, and says what is accepted."""
 import os
 
+from lib.pictures import packed_pixels
 from lib.program import PUFF, SMALL, Case, main
 
 PASSES = 'local fx = effect { name = "bad" }\n'
@@ -141,11 +142,11 @@ class Settings(Case):
 
     def test_settings_change_the_picture(self):
         self.render(PUFF)
-        before = self.read("out.png")
+        before = packed_pixels(self.read("out.png"))
         for text in ("thickness=40", "march.albedo=1,0,0", "march.mode=paper", "final.exposure_ev=2"):
             with self.subTest(text):
                 self.render(PUFF, "--set", text)
-                self.assertNotEqual(self.read("out.png"), before)
+                self.assertNotEqual(packed_pixels(self.read("out.png")), before)
 
 
 if __name__ == "__main__":

@@ -1,6 +1,7 @@
 """Events of an effect on the command line: the same ones give the same pictures, whichever frames are drawn."""
 import json
 
+from lib.pictures import packed_pixels
 from lib.program import SMALL, Case, main
 
 BALL = """
@@ -37,7 +38,7 @@ class Events(Case):
 
     def render(self, folder, *more):
         self.succeeds("render", "ball.lua", *SMALL, "-o", folder + "/%d.png", *more)
-        return self.read(folder + "/14.png")
+        return packed_pixels(self.read(folder + "/14.png"))
 
     def test_what_the_script_says_of_itself_is_printed(self):
         printed = self.succeeds("render", "ball.lua", *SMALL, "-o", "o.png", "--frames", "14")
@@ -58,7 +59,7 @@ class Events(Case):
         readouts = json.loads(self.read("stats.json"))["readouts"]
         self.assertEqual(readouts["effect.clicks"], 1)
         self.succeeds("render", "--from", "first/14.png", "-o", "from.png")
-        self.assertEqual(first, self.read("from.png"))
+        self.assertEqual(first, packed_pixels(self.read("from.png")))
         self.fails(1, "the effect handles no key x; it handles: click, key b", "render", "ball.lua", "--event", "1 key x")
         self.fails(1, "event '1 tap'; accepted: SECONDS click X Y", "render", "ball.lua", "--event", "1 tap")
         self.fails(1, "key 'space'; accepted: a letter as f, a digit, enter", "render", "ball.lua", "--event", "1 key space")

@@ -8,7 +8,7 @@ import subprocess
 import time
 import unittest
 
-from lib.pictures import Exr, Png
+from lib.pictures import Exr, Png, packed_pixels
 from lib.program import DATA, GROUND, PROGRAM, PUFF, SMALL, SOURCE, VOLUME, Case, main
 
 BALL = VOLUME % "sphere { position = {1, 1, 1}, radius = 1 } * 10"
@@ -167,7 +167,7 @@ return fx
         self.render(gathered, "--frames", "6", output="alone.png")
         self.render(gathered, "--frames", "1,6", "--warmup", "3", output="b%d.png")
         self.assertEqual(self.read("a6.png"), self.read("b6.png"))
-        self.assertNotEqual(self.read("a6.png"), self.read("alone.png"))
+        self.assertNotEqual(packed_pixels(self.read("a6.png")), packed_pixels(self.read("alone.png")))
         self.fails(2, "--warmup -1", "render", "effect.lua", "--warmup", "-1")
 
     def test_odd_sizes(self):

@@ -5,6 +5,17 @@ import zlib
 # ---- PNG (ISO 15948) --------------------------------------------------------------------------
 
 
+def packed_pixels(data):
+    """What of a PNG file is its picture, and not what it says of itself: the same for equal pixels."""
+    packed, at = b"", 8
+    while at < len(data):
+        length, kind = struct.unpack(">I4s", data[at:at + 8])
+        if kind == b"IDAT":
+            packed += data[at + 8:at + 8 + length]
+        at += 12 + length
+    return packed
+
+
 class Png:
     """`rows` of bytes or 16-bit numbers, `channels` a pixel."""
 
