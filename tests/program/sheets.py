@@ -175,6 +175,8 @@ class Sheets(Case):
     def test_cells_are_frames_in_order_and_metres_are_pixels(self):
         told = self.export(ROLLING, "--frames", "1-13:4", *SHORT)
         self.assertEqual((told["grid"], told["frames"], told["fps"], told["cell"]), ([2, 2], 4, 2.5, [64, 64]))
+        self.assertEqual((told["made"]["kind"], told["made"]["effect"]), ("sheet", "effect.lua"))
+        self.assertRegex(told["made"]["inputs"], "^[0-9a-f]{32}$")
         # The ball goes from x = -0.5 to 1.7 m, so the cells show 2.2 m within their gutters.
         self.assertAlmostEqual(told["size_m"][0], 2.2 * 64 / 56, 2)
         sheet = self.picture("fire.png")
