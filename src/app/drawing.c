@@ -269,9 +269,12 @@ void drawing_begin(live *l) {
     if (catch_up(l)) draw(l);
 }
 
+// Where another effect follows, the frame at work is waited for: without its device the program
+// ends.
 void drawing_end(live *l) {
-    double end = clock_seconds() + LAST_SECONDS;
-    while (roil_pending(l->r) && clock_seconds() < end) window_wait(POLL);
+    const double end = clock_seconds() + (l->leaves ? (double)INFINITY : LAST_SECONDS);
+    while (roil_pending(l->r) && clock_seconds() < end && !(l->leaves && window_closing(l->window)))
+        window_wait(POLL);
     if (roil_pending(l->r)) roil_give_up(l->r);
 }
 
