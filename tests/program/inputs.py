@@ -224,8 +224,8 @@ void main() {
 
 
 class Shaders(Case):
-    EFFECT = """local fx = effect { name = "shader" }
-fx.output = shader { "dim.comp", geometry {}.albedo%s }.color
+    EFFECT = """local fx = effect { name = "shader" }; fx.camera = orbit { distance = 9, pitch = 30 }
+fx.output = shader { "dim.comp", geometry { mesh "ground.obj" }.albedo%s }.color
 """
 
     def setUp(self):
