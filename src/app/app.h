@@ -134,6 +134,15 @@ void app_add_event(app_settings *s, const char *text); // "2.5 click 0.4 0.6"
 // Checks that a file can be an effect. False with a message that says what it is instead.
 bool app_check_effect(const char *file);
 bool app_declares_effect(const char *file); // a Lua file that is no module and no sweep
+typedef struct app_export {                 // of an effect: what `roil export vdb` and `sheet` do
+    const struct app_device *device;        // device_options.h
+    app_settings *settings;
+    const char *file;
+    bool (*plan)(void *job, roil_effect *e); // completes the job; false with a message: bad usage
+    bool (*make)(void *job, roil_effect *e); // false with a message: bad input
+    void *job;
+} app_export;
+int app_export_effect(const app_export *x); // loads the effect, plans, makes; returns the status
 // Reads the presets and collects all settings of an effect. `from` may be NULL; else it must
 // outlive `s`.
 bool app_collect_settings(app_settings *s, roil *r, const char *effect, const roil_recipe *from);

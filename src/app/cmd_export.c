@@ -1,6 +1,7 @@
 // roil export raw 'FILES*.vdb' -o FILE.raw: writes a VDB sequence as plain voxels. `roil export
 // vdb` is in export_vdb.c, `roil export sheet` in export_sheet.c.
 #include "app/app.h"
+#include "app/device_options.h"
 #include <popt.h>
 #include <stdio.h>
 #include <string.h>
@@ -46,6 +47,25 @@ static int export_raw(int argc, const char **argv) {
     }
     poptFreeContext(context);
     return status;
+}
+
+int app_export_effect(const app_export *x) {
+    roil_desc desc = app_device_desc(x->device);
+    app_progress files = {0};
+    desc.loading = app_tell_files;
+    desc.user = &files;
+    roil *r = roil_create(&desc);
+    bool collected = r && app_collect_settings(x->settings, r, x->file, NULL);
+    roil_effect *e = collected ? roil_load(r, x->file, x->settings->all, x->settings->count) : NULL;
+    int status = APP_DONE;
+    if (!e)
+        status = app_fail_input();
+    else if (!x->plan(x->job, e))
+        status = app_fail(APP_BAD_USAGE, "export: %s", roil_error());
+    else if (!x->make(x->job, e))
+        status = app_fail_input();
+    roil_unload(e);
+    return app_close(r, status);
 }
 
 int cmd_export(int argc, const char **argv) {

@@ -213,7 +213,8 @@ static bool plan_loop(job *j, roil_effect *e, const roil_effect_info *info) {
     return true;
 }
 
-static bool plan(job *j, roil_effect *e) {
+static bool plan(void *user, roil_effect *e) {
+    job *j = user;
     roil_effect_info info = roil_get_info(e);
     if (!(j->loop > 0 ? plan_loop(j, e, &info) : plan_frames(j, &info))) return false;
     qsort(j->shots, j->shot_count, sizeof *j->shots, by_frame);
@@ -243,7 +244,8 @@ static bool draw(const job *j, roil_effect *e, roil_sheet *s) {
     return done;
 }
 
-static bool export_all(job *j, roil_effect *e) {
+static bool export_all(void *user, roil_effect *e) {
+    job *j = user;
     if (!app_can_write(j->output)) return false;
     roil_sheet *s = roil_sheet_create(e, &j->desc);
     bool done = s && draw(j, e, s) && roil_sheet_save(s, j->output, &j->options);
@@ -257,31 +259,13 @@ static bool export_all(job *j, roil_effect *e) {
     return done;
 }
 
-static int export_cells(job *j) {
-    roil_desc desc = app_device_desc(&j->device);
-    app_progress files = {0};
-    desc.loading = app_tell_files;
-    desc.user = &files;
-    roil *r = roil_create(&desc);
-    bool collected = r && app_collect_settings(&j->settings, r, j->file, NULL);
-    roil_effect *e = collected ? roil_load(r, j->file, j->settings.all, j->settings.count) : NULL;
-    int status = APP_DONE;
-    if (!e)
-        status = app_fail_input();
-    else if (!plan(j, e))
-        status = app_fail(APP_BAD_USAGE, "export: %s", roil_error());
-    else if (!export_all(j, e))
-        status = app_fail_input();
-    roil_unload(e);
-    return app_close(r, status);
-}
-
 int export_sheet(int argc, const char **argv) {
     job j = {.frames.step = 1, .cell = 256, .gutter = 4};
     poptContext context;
-    int status = sheet_parse(&j, argc, argv, &context)
-                     ? export_cells(&j)
-                     : app_fail(APP_BAD_USAGE, "export: %s", roil_error());
+    int status =
+        sheet_parse(&j, argc, argv, &context)
+            ? app_export_effect(&(app_export){&j.device, &j.settings, j.file, plan, export_all, &j})
+            : app_fail(APP_BAD_USAGE, "export: %s", roil_error());
     poptFreeContext(context);
     mem_free(j.shots);
     app_free_frames(&j.frames);

@@ -105,7 +105,8 @@ static bool export_parse(job *j, int argc, const char **argv, poptContext *conte
 
 enum { PICTURE = 16 }; // pixels a side of what is not drawn
 
-static bool export_complete(job *j, roil_effect *e) {
+static bool export_complete(void *user, roil_effect *e) {
+    job *j = user;
     roil_effect_info info = roil_get_info(e);
     char range[64];
     snprintf(range, sizeof range, "%u-%u", info.first_frame, info.first_frame + info.frames - 1);
@@ -141,7 +142,8 @@ static bool write_frames(const job *j, roil_effect *e, roil_volume *v) {
     return done;
 }
 
-static bool export_all(job *j, roil_effect *e) {
+static bool export_all(void *user, roil_effect *e) {
+    job *j = user;
     char file[PATH_CAP];
     app_format_pattern(j->output, j->frames.numbers[0], file, sizeof file);
     if (!app_can_write(file)) return false;
@@ -156,30 +158,12 @@ static bool export_all(job *j, roil_effect *e) {
     return true;
 }
 
-static int export_frames(job *j) {
-    roil_desc desc = app_device_desc(&j->device);
-    app_progress files = {0};
-    desc.loading = app_tell_files;
-    desc.user = &files;
-    roil *r = roil_create(&desc);
-    bool collected = r && app_collect_settings(&j->settings, r, j->file, NULL);
-    roil_effect *e = collected ? roil_load(r, j->file, j->settings.all, j->settings.count) : NULL;
-    int status = APP_DONE;
-    if (!e)
-        status = app_fail_input();
-    else if (!export_complete(j, e))
-        status = app_fail(APP_BAD_USAGE, "export: %s", roil_error());
-    else if (!export_all(j, e))
-        status = app_fail_input();
-    roil_unload(e);
-    return app_close(r, status);
-}
-
 int export_vdb(int argc, const char **argv) {
     job j = {.frames.step = 1};
     poptContext context;
     int status = export_parse(&j, argc, argv, &context)
-                     ? export_frames(&j)
+                     ? app_export_effect(&(app_export){&j.device, &j.settings, j.file,
+                                                       export_complete, export_all, &j})
                      : app_fail(APP_BAD_USAGE, "export: %s", roil_error());
     poptFreeContext(context);
     app_free_frames(&j.frames);
