@@ -172,7 +172,7 @@ static void add_param(strbuf *out, const roil_control *c, const char *name) {
     if (ranged && isfinite(c->max)) add_number_key(out, "max", c->max);
     if (c->type == ROIL_INT) strbuf_add(out, ", integer = true");
     if (c->type == ROIL_COLOR && !value_color_hex(c->value, hex)) strbuf_add(out, ", color = true");
-    if (c->log_scale) strbuf_add(out, ", log = true");
+    if (c->log_scale && c->min > 0) strbuf_add(out, ", log = true");
     if (c->type == ROIL_ENUM) add_words(out, c);
     add_text_key(out, "unit", c->unit);
     if (c->parameter) add_text_key(out, "group", c->group);
