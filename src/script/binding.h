@@ -130,6 +130,8 @@ const char *value_get_string(lua_State *L, int table, const char *who, const cha
 // Returns the key `name`; without one, the variable that the script assigns the call to; else
 // `who`.
 const char *value_name_or_variable(lua_State *L, int table, const char *who); // naming.c
+// The same of a palette or a curve: without the key, what its value is for (source_purpose).
+const char *value_name_or_purpose(lua_State *L, int table, const char *who);
 // Finds the local variable that the script assigns the call of `call` to. False: it is none.
 bool value_variable(lua_State *L, const char *call, char *out, size_t capacity);
 // Returns NULL when the key is absent.
@@ -193,6 +195,7 @@ void l_param_open(lua_State *L);
 void l_field_open(lua_State *L);
 void l_curve_open(lua_State *L);
 void l_palette_open(lua_State *L);
+void l_layers_open(lua_State *L);
 void l_grid_open(lua_State *L);
 void l_scene_open(lua_State *L);
 void l_light_open(lua_State *L);

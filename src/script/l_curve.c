@@ -50,7 +50,7 @@ static int l_curve(lua_State *L) {
     }
     vm_charge_memory(L, EFFECT_CONTROL_COST + desc.count * (sizeof *list + TEXT_COST));
     curve *c = curve_create(script_memory(L), &desc);
-    const char *name = c ? value_name_or_variable(L, 1, who) : NULL;
+    const char *name = c ? value_name_or_purpose(L, 1, who) : NULL;
     if (!name || !effect_add_curve(script_of(L)->effect, c, name)) script_raise(L);
     script_note_place(L, c, who);
     field_push(L, field_curve(script_memory(L), c));

@@ -122,7 +122,7 @@ static int l_palette(lua_State *L) {
     }
     vm_charge_memory(L, EFFECT_CONTROL_COST + sizeof desc + sizeof keys);
     palette *p = palette_create(script_memory(L), &desc);
-    const char *name = p ? value_name_or_variable(L, 1, who) : NULL;
+    const char *name = p ? value_name_or_purpose(L, 1, who) : NULL;
     if (!name || !effect_add_palette(script_of(L)->effect, p, name)) script_raise(L);
     script_note_place(L, p, who);
     push_palette(L, p);
@@ -163,7 +163,7 @@ static int l_over_age(lua_State *L) {
     palette *p = palette_create(script_memory(L), &(palette_desc){.keys = &key, .key_count = 1});
     if (!p) script_raise(L);
     effect *e = script_of(L)->effect;
-    const char *name = value_name_or_variable(L, 1, name_of);
+    const char *name = value_name_or_purpose(L, 1, name_of);
     if (lua_toboolean(L, 2)) {
         curve *c = curve_of(L, &key);
         name = c ? effect_add_age_curve(e, c, p, name) : NULL;

@@ -1,10 +1,15 @@
-// Names of palettes and curves, taken from the script: `local fire = palette { ... }` gives "fire",
-// and `size = over_age { ... }` gives "size", so that they can be set by that name.
+// Names of palettes, curves and fields, taken from the script, so that they can be set by them:
+// `local fire = palette { ... }` gives "fire", and `local hot = splats { size = over_age { ... } }`
+// gives "hot_size".
 #include "script/binding.h"
+#include "script/source.h"
 #include <ctype.h>
 #include <string.h>
 
-enum { LINES_ABOVE = 3 }; // a call that is split over lines is found by one of them
+enum {
+    LINES_ABOVE = 3, // a call that is split over lines is found by one of them
+    LETTERS = 16,    // that cost an instruction to look through
+};
 
 static bool is_part(char c) { // of an identifier
     return isalnum((unsigned char)c) || c == '_';
@@ -61,31 +66,50 @@ static const char *next_call(lua_State *L, const char *text, const char *line, c
     return call;
 }
 
-static bool name_by_source(lua_State *L, const char *who, char *out, size_t capacity, bool *local) {
+// Finds the call of `who` that the script is at. NULL: its text has none there.
+static const char *call_at(lua_State *L, const char *who, const char **text) {
     size_t begin;
-    const char *text = vm_caller_source(L, &begin);
-    const char *line = text ? text + begin : NULL;
+    *text = vm_caller_source(L, &begin);
+    const char *line = *text ? *text + begin : NULL;
     for (int i = 0; line && i <= LINES_ABOVE; i++) {
-        const char *call = next_call(L, text, line, who);
-        if (call) return read_name(text, call, out, capacity, local);
-        if (line == text) break;
-        for (line--; line > text && line[-1] != '\n';) line--;
+        const char *call = next_call(L, *text, line, who);
+        if (call) return call;
+        if (line == *text) break;
+        for (line--; line > *text && line[-1] != '\n';) line--;
     }
-    return false;
+    return NULL;
 }
 
 bool value_variable(lua_State *L, const char *call, char *out, size_t capacity) {
     bool local;
-    return name_by_source(L, call, out, capacity, &local) && local;
+    const char *text, *at = call_at(L, call, &text);
+    return at && read_name(text, at, out, capacity, &local) && local;
 }
 
-const char *value_name_or_variable(lua_State *L, int table, const char *who) {
+static const char *given_name(lua_State *L, int table, const char *who) {
     const char *given = value_get_string(L, table, who, "name");
     if (given && !str_is_identifier(given))
         vm_error(L, "%s: name '%.64s' is not a name (letters, digits and _)", who, given);
+    return given;
+}
+
+const char *value_name_or_variable(lua_State *L, int table, const char *who) {
+    const char *given = given_name(L, table, who);
     char name[64];
     bool local;
     if (given) return given;
-    return name_by_source(L, who, name, sizeof name, &local) ? arena_string(script_memory(L), name)
-                                                             : who;
+    const char *text, *at = call_at(L, who, &text);
+    bool named = at && read_name(text, at, name, sizeof name, &local);
+    return named ? arena_string(script_memory(L), name) : who;
+}
+
+const char *value_name_or_purpose(lua_State *L, int table, const char *who) {
+    const char *given = given_name(L, table, who);
+    char name[64];
+    if (given) return given;
+    const char *text, *at = call_at(L, who, &text);
+    if (at) vm_charge(L, (uint64_t)(at - text) / LETTERS);
+    bool named = at && source_purpose(text, (size_t)(at - text), name, sizeof name) &&
+                 str_is_identifier(name);
+    return named ? arena_string(script_memory(L), name) : who;
 }

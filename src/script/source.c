@@ -1,5 +1,6 @@
 #include "script/source.h"
 #include <ctype.h>
+#include <stdio.h>
 #include <string.h>
 
 // ---- tokens -------------------------------------------------------------------------------------
@@ -76,6 +77,10 @@ static bool is(const char *text, const token *t, const char *word) {
     size_t length = strlen(word);
     return t->kind != STRING && t->at.end - t->at.begin == length &&
            strncmp(text + t->at.begin, word, length) == 0;
+}
+
+static bool is_separator(const char *text, const token *t) {
+    return is(text, t, ",") || is(text, t, ";");
 }
 
 // By how much a token opens or closes a bracket, or a block: `for` and `while` have a `do`.
@@ -157,11 +162,107 @@ source_range source_assigned_name(const char *text, const source_call *call) {
     return named ? last[1].at : (source_range){0, 0};
 }
 
-// ---- tables -------------------------------------------------------------------------------------
+// ---- what a value is for ------------------------------------------------------------------------
 
-static bool is_separator(const char *text, const token *t) {
-    return is(text, t, ",") || is(text, t, ";");
+enum { DEEPEST = 64 };
+
+typedef struct level {  // what is between brackets, or a block of statements
+    source_range key;   // that the value being read is for; empty: none
+    source_range owner; // of a call's table: what the call makes
+    bool table, block;
+} level;
+
+typedef struct walk {
+    level levels[DEEPEST];
+    size_t depth; // the innermost is levels[depth]
+    token last[5];
+} walk;
+
+static bool is_one_of(const char *text, const token *t, const char *const *words) {
+    for (; *words; words++)
+        if (is(text, t, *words)) return true;
+    return false;
 }
+
+static bool ends_value(const char *text, const token *t) {
+    static const char *const closing[] = {")", "}", "]", "end", NULL}, *const operators[] = {
+                                                                           "and",   "or",     "not",
+                                                                           "local", "return", NULL};
+    return t->kind == NUMBER || t->kind == STRING || is_one_of(text, t, closing) ||
+           (t->kind == NAME && !is_one_of(text, t, operators));
+}
+
+// Returns what the table that opens now is given to a call for: after "hot = splats {", "hot".
+static source_range owner_of(const walk *w, const char *text) {
+    const level *l = &w->levels[w->depth];
+    size_t name = 4; // in w->last
+    if (is(text, &w->last[name], "(")) {
+        name--;
+        l = w->depth ? l - 1 : l;
+    }
+    bool direct = w->last[name].kind == NAME && is(text, &w->last[name - 1], "=");
+    bool picture = is(text, &(token){NAME, l->key}, "output"); // of the effect: says nothing
+    return direct && !picture ? l->key : (source_range){0, 0};
+}
+
+static void note_key(walk *w, const char *text, const token *next) {
+    level *l = &w->levels[w->depth];
+    const token *name = &w->last[4];
+    if (is(text, name, ">")) name = &w->last[1]; // local fire <const> =
+    if (name->kind == NAME) l->key = name->at;
+    if (l->table && is(text, name, "name") && next->kind == STRING)
+        l->owner = (source_range){next->at.begin + 1, next->at.end - 1};
+}
+
+static bool note_token(walk *w, const char *text, const token *t) {
+    static const char *const begins[] = {"local", "return", "if",   "for", "while",
+                                         "then",  "do",     "else", "end", "repeat",
+                                         "until", ";",      NULL};
+    level *l = &w->levels[w->depth];
+    int depth = depth_of(text, t);
+    bool statement =
+        is_one_of(text, t, begins) ||
+        (t->kind == NAME && ends_value(text, &w->last[4]) && ends_value(text, t) && depth == 0);
+    if (l->table ? is_separator(text, t) : l->block && statement) l->key = (source_range){0, 0};
+    if (is(text, t, "=")) {
+        token next = next_token(text, t->at.end);
+        note_key(w, text, &next);
+    } else if (depth > 0) {
+        if (w->depth + 1 == DEEPEST) return false;
+        bool table = is(text, t, "{");
+        level inner = {.table = table, .block = !table && !strchr("([", text[t->at.begin])};
+        if (table) inner.owner = owner_of(w, text);
+        w->levels[++w->depth] = inner;
+    } else if (depth < 0 && w->depth > 0) {
+        w->depth--;
+    }
+    memmove(w->last, w->last + 1, 4 * sizeof *w->last);
+    w->last[4] = *t;
+    return true;
+}
+
+static bool is_there(source_range range) {
+    return range.end > range.begin;
+}
+
+bool source_purpose(const char *text, size_t at, char *out, size_t capacity) {
+    walk w = {.levels = {{.block = true}}};
+    for (token t = next_token(text, 0); t.kind != END && t.at.begin <= at;
+         t = next_token(text, t.at.end))
+        if (!note_token(&w, text, &t)) return false;
+    size_t i = w.depth;
+    while (i > 0 && !is_there(w.levels[i].key) && !w.levels[i].block) i--;
+    source_range key = w.levels[i].key;
+    source_range owner = w.levels[i].table ? w.levels[i].owner : (source_range){0, 0};
+    size_t length = key.end - key.begin, before = owner.end - owner.begin + is_there(owner);
+    if (length == 0 || before + length >= capacity) return false;
+    if (before) snprintf(out, capacity, "%.*s_", (int)before - 1, text + owner.begin);
+    memcpy(out + before, text + key.begin, length);
+    out[before + length] = 0;
+    return true;
+}
+
+// ---- tables -------------------------------------------------------------------------------------
 
 bool source_read_entry(const char *text, source_range table, size_t at, source_entry *out) {
     token first = next_token(text, at), second = next_token(text, first.at.end);

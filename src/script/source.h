@@ -36,3 +36,7 @@ size_t source_table_end(const char *text, source_range table, bool *first);
 bool source_is_literal(const char *text, source_range value);
 // Returns the name of the variable or the key that a call's value is assigned to; empty: none.
 source_range source_assigned_name(const char *text, const source_call *call);
+// Names what the value of the call at `at` is for: the variable or the key that it is a part of. A
+// key of a call's table comes after what that call makes, by its key `name` before or its variable:
+// local hot = splats { size = 2 * over_age { ... } } gives "hot_size". False: it has no name.
+bool source_purpose(const char *text, size_t at, char *out, size_t capacity);

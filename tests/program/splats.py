@@ -44,13 +44,13 @@ class Splats(Case):
         listed = self.succeeds("info", "params", "effect.lua")
         self.assertIn("a number over a particle's life (0..1)", listed)
         self.assertNotIn("palette", listed.replace("palettes and curves", ""))
-        self.assertEqual(self.frame(9, "size=linear 0 1; 0.45 1; 0.55 0.2; 1 0.2")[1], old)
-        _, larger = self.frame(9, "size=linear 0 0.2; 1 0.6")
+        self.assertEqual(self.frame(9, "drawn_size=linear 0 1; 0.45 1; 0.55 0.2; 1 0.2")[1], old)
+        _, larger = self.frame(9, "drawn_size=linear 0 0.2; 1 0.6")
         self.assertGreater(larger, 2 * old)
         for text, says in (("cubic 0 1; 1 2", "linear"), ("linear 0 1; 0 2", "does not come after"), ("linear 0 1,1,1; 1 2,2,2", "component"),
                            ("linear 0 1; 1 -2", "65504"), ("linear 0 1", "2")):
             with self.subTest(text):
-                self.fails(1, ["size", says], "render", "effect.lua", "--set", "size=" + text, "-o", "o.png")
+                self.fails(1, ["drawn_size", says], "render", "effect.lua", "--set", "drawn_size=" + text, "-o", "o.png")
 
     def test_particles_are_a_density(self):
         self.write("effect.lua", HEAD + """

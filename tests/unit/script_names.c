@@ -43,7 +43,7 @@ static void what_goes_over_age_is_named_as_what_it_is(void **state) {
     (void)state;
     expect("local fading = over_age " AGES, "fading");
     expect("local t = { size = over_age " AGES ", opacity = over_age " AGES " }", "size opacity");
-    expect("local t = { size = 2 * over_age " AGES " }", "over_age");
+    expect("local t = { size = 2 * over_age " AGES " }", "size");
     expect("for i = 1, 2 do local t = { a = over_age " AGES ", b = over_age " AGES " } end",
            "a b a_2 b_2");
     effect *e = load("local size = over_age " AGES
@@ -59,6 +59,29 @@ static void what_goes_over_age_is_named_as_what_it_is(void **state) {
     effect_destroy(e);
 }
 
+// Of what is given to a call: what that makes, and the key.
+static void what_a_call_is_given_is_named_after_both(void **state) {
+    (void)state;
+    expect("local lamp = point_light { position = {0, 0, 1}, power = curve { {0, 1} } }",
+           "lamp_power");
+    expect("local lamp <const> = point_light({ position = {0, 0, 1}, power = 3 * curve { {0, 1} } "
+           "+ 1 })",
+           "lamp_power");
+    expect(
+        "fx.camera = orbit { distance = curve { {0, 1} }, fov = 30, yaw = 2 * curve { {0, 1} } }",
+        "camera_distance camera_yaw");
+    expect(
+        "local l = point_light { name = 'glow', position = {0, 0, 1}, power = curve { {0, 1} } }",
+        "glow_power");
+    expect("fx.output = geometry { max_distance = 9 * curve { {0, 1} } }", "max_distance");
+    expect("print(point_light { position = {0, 0, 1}, power = curve { {0, 1} } })", "power");
+    expect("local a = 2 * curve { {0, 1} }", "a");
+    expect("local a = max(2, 1 + curve { {0, 1} })", "a");
+    expect("local a = { curve { {0, 1} }, curve { {0, 1} } }", "a a_2");
+    expect("local function f() local b = 1; return curve { {0, 1} } end local a = f()", "curve");
+    expect("local f = function() return curve { {0, 1} } end\nlocal a = f()", "curve");
+}
+
 static void calls_over_several_lines_are_found(void **state) {
     (void)state;
     expect("local fire = palette {\n  {0, '#000'},\n  {1, '#fff'},\n}", "fire");
@@ -70,8 +93,8 @@ static void calls_over_several_lines_are_found(void **state) {
 static void what_has_no_variable_is_numbered(void **state) {
     (void)state;
     expect("print(palette " STOPS ")", "palette");
-    expect("local a = 2 * curve { {0, 1} }", "curve");
-    expect("local a = { curve { {0, 1} }, curve { {0, 1} } }", "curve curve_2");
+    expect("curve { {0, 1} }", "curve");
+    expect("local a = 1\nprint(2 * curve { {0, 1} })", "curve");
     expect("local function make() return palette " STOPS " end\nlocal a, b = make(), make()",
            "palette palette_2");
     expect("assert(nil == curve { {0, 1} } or true)", "curve");
@@ -144,6 +167,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(variables_and_fields_name_what_they_hold),
         cmocka_unit_test(what_goes_over_age_is_named_as_what_it_is),
+        cmocka_unit_test(what_a_call_is_given_is_named_after_both),
         cmocka_unit_test(calls_over_several_lines_are_found),
         cmocka_unit_test(what_has_no_variable_is_numbered),
         cmocka_unit_test(those_beyond_a_limit_have_no_name),
