@@ -62,6 +62,8 @@ end
 -- picture wrapped around the origin, as published: it shrinks to a point at both poles, and scales are
 -- rounded so that it closes behind. `shift`, 0..1, moves it: shell_shift, so that no two shells look
 -- alike. Other keys are those of the noise: seed, speed, octaves, fractal.
+local numbers_of = layers -- a copy of its table in which numbers are controls (l_layers.c)
+
 local function layers_wrong(what)
   error("layers takes 1 to 64 pairs {scale, strength}, as in layers { {2, 1}, {7, 0.4} }; " .. what, 3)
 end
@@ -72,10 +74,11 @@ local function whole_cells(scale)
 end
 
 local function one_layer(settings, number, scale, flat)
-  local own = { octaves = 1 }
+  local own = {}
   for key, value in pairs(settings) do
     if type(key) == "string" and key ~= "dimensions" and key ~= "noise" and key ~= "shift" then own[key] = value end
   end
+  own.octaves = settings.octaves or 1 -- where there are too many lists
   own.seed = (settings.seed or 0) + 17 * (number - 1)
   own.frequency = flat and whole_cells(scale) or scale
   if flat then own.period = own.frequency end
@@ -90,6 +93,9 @@ function layers(settings)
   if type(settings.noise or perlin) ~= "function" then layers_wrong("'noise' is perlin, simplex, value or worley, as in noise = worley") end
   for i, layer in ipairs(settings) do
     if type(layer) ~= "table" or #layer ~= 2 or type(layer[1]) == "string" or type(layer[2]) == "string" then layers_wrong("number " .. i .. " is none") end
+  end
+  settings = numbers_of(settings)
+  for i, layer in ipairs(settings) do
     sum = sum + one_layer(settings, i, layer[1], flat) * layer[2]
     all = all + layer[2]
   end

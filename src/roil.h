@@ -380,6 +380,7 @@ typedef struct roil_control { // strings live as long as the effect
     const char *group; // of a parameter: as declared, "" for none; else the part before the dot
     bool parameter;    // declared by the script, for its users
     bool field;        // a number that a field was given, such as "lumps.frequency"
+    size_t layer;      // of layers of noise: which of the group's, from 1; 0: of none
     bool object;       // of a light, a material, a node, a mesh, a volume: "lamp.power"
     roil_type type;
     int components;
@@ -389,7 +390,7 @@ typedef struct roil_control { // strings live as long as the effect
     const char *unit, *help;
     const char *const *words; // of an enum
     size_t word_count;
-    bool log_scale;
+    bool log_scale;  // its bar had better be logarithmic: the script says so, or the range is wide
     bool structural; // a change loads the effect anew (roil_live does)
     bool driven; // the script moves it, by a curve, a function or a parameter; setting it ends that
     bool moved;  // differs from the script, by a setting

@@ -23,6 +23,23 @@ roil_edits *roil_edits_create(roil_effect *e, const char *control);
 // steps = param { "march_steps", 64, min = 1, max = 4096 }. NULL with a message also for what can
 // be none.
 roil_edits *roil_edits_create_parameter(roil_effect *e, const char *control);
+
+typedef struct roil_layers { // of noise, that one call of the script lists: layers { {2, 1}, ... }
+    const char *name;        // the group of their controls, "lumps"; as long as the effect
+    size_t count;
+} roil_layers;
+typedef enum roil_layer_change {
+    ROIL_LAYER_ADD,       // after the last: twice as fine, and half as strong
+    ROIL_LAYER_DUPLICATE, // before it
+    ROIL_LAYER_REMOVE,
+} roil_layer_change;
+size_t roil_list_layers(const roil_effect *e, roil_layers *out, size_t capacity);
+// Finds what to write for a list of layers, by its name, to have one more or one less; `layer`,
+// from 1, does not matter for ROIL_LAYER_ADD. What was set of its layers is written with it, since
+// they are counted anew then. NULL with a message: there is no such layer.
+roil_edits *roil_edits_create_layer(roil_effect *e, const char *layers, size_t layer,
+                                    roil_layer_change how);
+
 size_t roil_edits_list(const roil_edits *x, roil_edit *out, size_t capacity);
 // Write the files, and write them as they were before. False with a message: a file is not what it
 // is supposed to be, and none was written; or one cannot be written.

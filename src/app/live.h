@@ -126,7 +126,9 @@ void changes_draw(live *l);      // the list of what was done
 
 void write_back_ask(live *l, const char *control); // NULL: every control that was changed
 void write_back_pin(live *l, const char *control); // becomes a parameter
-void write_back_draw(live *l);                     // shows what will change
+// For a list of layers of noise to have one more or one less.
+void write_back_layer(live *l, const char *layers, size_t layer, roil_layer_change how);
+void write_back_draw(live *l); // shows what will change
 void write_back_close(live *l);
 
 // ---- camera_input.c: the user moves the camera --------------------------------------------------

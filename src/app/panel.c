@@ -6,8 +6,9 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { PANEL_READOUTS = 64 };
+enum { PANEL_READOUTS = 64, PANEL_LAYERS = 64 };
 static const float SEARCH = 48, PRESETS = 108; // heights of the parts that do not scroll, units
+static const float LAYER_BUTTON = 26;          // units that one takes
 
 panel *panel_create(void) {
     panel *p = mem_alloc(sizeof *p);
@@ -64,9 +65,69 @@ static void draw_shape(live *l, const roil_control *c) {
         curve_draw(l, c->name);
 }
 
+// ---- layers of noise --------------------------------------------------------------------------
+
+// Draws the rows of one layer, from 1; 0: what is for all.
+static void draw_layer_rows(live *l, const panel_section *s, size_t layer) {
+    const panel *p = l->panel;
+    for (size_t i = 0; i < s->count; i++) {
+        const roil_control *c = &p->controls[p->model.rows[s->first + i]];
+        if (c->layer == layer) panel_row(l, c);
+    }
+}
+
+static void draw_layer(live *l, const panel_section *s, size_t layer, size_t count) {
+    char label[32];
+    snprintf(label, sizeof label, "layer %zu", layer);
+    panel_label(label);
+    ui_push(label);
+    ui_align_right(2 * LAYER_BUTTON * ui_scale());
+    if (ui_icon_button("duplicate", UI_ICON_COPY, false, "the same layer once more"))
+        write_back_layer(l, s->title, layer, ROIL_LAYER_DUPLICATE);
+    ui_same_line();
+    ui_disable_begin(count < 2);
+    if (ui_icon_button("remove", UI_ICON_REMOVE, false, "takes this layer out of the file"))
+        write_back_layer(l, s->title, layer, ROIL_LAYER_REMOVE);
+    ui_disable_end();
+    ui_pop();
+    draw_layer_rows(l, s, layer);
+}
+
+static void draw_layers(live *l, const panel_section *s, size_t count) {
+    panel_table_begin(s->title);
+    for (size_t i = 1; i <= count; i++) draw_layer(l, s, i, count);
+    ui_table_end();
+    if (ui_button("Add a layer")) write_back_layer(l, s->title, count, ROIL_LAYER_ADD);
+    ui_tooltip(
+        "twice as fine as the last, and half as strong; the file is shown before it changes");
+    panel_table_begin("all");
+    draw_layer_rows(l, s, 0);
+    ui_table_end();
+}
+
+// Returns whether a search has found nothing of a section's layers but what is for all.
+static bool leaves_layers_out(const panel *p, const panel_section *s) {
+    for (size_t i = 0; i < s->count; i++)
+        if (p->controls[p->model.rows[s->first + i]].layer) return false;
+    return p->search[0];
+}
+
+// Returns how many layers of noise a group lists; 0: it is none.
+static size_t count_layers(const live *l, const panel_section *s) {
+    roil_layers all[PANEL_LAYERS];
+    if (s->part != PANEL_FIELD || leaves_layers_out(l->panel, s)) return 0;
+    size_t count = roil_list_layers(l->effect, all, PANEL_LAYERS);
+    for (size_t i = 0; i < count && i < PANEL_LAYERS; i++)
+        if (strcmp(all[i].name, s->title) == 0) return all[i].count;
+    return 0;
+}
+
 static void draw_content(live *l, const panel_section *s) {
+    size_t layers = count_layers(l, s);
     if (s->part == PANEL_SHAPE)
         draw_shape(l, &l->panel->controls[l->panel->model.rows[s->first]]);
+    else if (layers)
+        draw_layers(l, s, layers);
     else
         draw_rows(l, s);
     if (s->part == PANEL_PASS) draw_readouts(l, s->title);

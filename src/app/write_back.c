@@ -13,7 +13,8 @@ struct write_back {
     roil_edits *edits; // NULL: they were written, and belong to the undo steps
     roil_edit *list;
     size_t count, writable;
-    char control[96]; // the only one; "": all
+    char control[96]; // the only one, or the group of layers; "": all
+    bool layers;      // there will be another number of them
 };
 
 void write_back_close(live *l) {
@@ -49,6 +50,12 @@ void write_back_pin(live *l, const char *control) {
     if (l->effect) open_edits(l, roil_edits_create_parameter(l->effect, control), control);
 }
 
+void write_back_layer(live *l, const char *layers, size_t layer, roil_layer_change how) {
+    if (!l->effect) return;
+    open_edits(l, roil_edits_create_layer(l->effect, layers, layer, how), layers);
+    if (l->writing) l->writing->layers = true;
+}
+
 // ---- writing ------------------------------------------------------------------------------------
 
 static bool is_refused(const write_back *w, const char *name) {
@@ -57,18 +64,25 @@ static bool is_refused(const write_back *w, const char *name) {
     return false;
 }
 
+static bool is_meant(const write_back *w, const roil_control *c) {
+    if (w->layers) return c->layer && strcmp(w->control, c->group) == 0;
+    return !w->control[0] || strcmp(w->control, c->name) == 0;
+}
+
 // The values that were written are the script's own from now on; undoing sets them again.
 static void note_written(live *l, write_back *w) {
     char label[sizeof w->control + PATH_CAP];
-    snprintf(label, sizeof label, "written: %s", w->control[0] ? w->control : path_name(l->file));
+    snprintf(label, sizeof label, "written: %s%s", w->layers ? "layers of " : "",
+             w->control[0] ? w->control : path_name(l->file));
     undo_note_written(&l->undo, w->edits, label);
     w->edits = NULL;
     for (size_t i = 0; i < roil_control_count(l->effect); i++) {
         roil_control c;
         roil_get_control(l->effect, i, &c);
-        bool meant = c.moved && (!w->control[0] || strcmp(w->control, c.name) == 0);
-        char *text = meant && !is_refused(w, c.name) ? roil_live_setting(l->follow, c.name) : NULL;
+        if (!c.moved || !is_meant(w, &c) || is_refused(w, c.name)) continue;
+        char *text = roil_live_setting(l->follow, c.name);
         if (text) undo_add_value(&l->undo, c.name, text);
+        if (w->layers) roil_live_reset(l->follow, c.name); // another one has its name now
         roil_free(text);
     }
 }

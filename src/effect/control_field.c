@@ -41,6 +41,8 @@ static bool is_taken(effect *e, const char *name) {
         if (strcmp(c->name, name) == 0) return true;
         if (c->kind >= EFFECT_CONTROL_SCENE && strcmp(c->group, name) == 0) return true;
     }
+    for (size_t i = 0; i < e->layers_count; i++)
+        if (strcmp(e->layers[i]->name, name) == 0) return true;
     return false;
 }
 
@@ -76,6 +78,64 @@ bool effect_add_field(effect *e, const char *name, const field *node, field *con
     }
     return true;
 }
+
+// ---- layers -------------------------------------------------------------------------------------
+
+static bool add_number(effect *e, const char *group, const value_desc *desc, field *value,
+                       size_t layer) {
+    control own = control_of_constant(e, EFFECT_CONTROL_FIELD, value);
+    own.face.layer = layer;
+    return effect_apply_to(e, effect_add_member(e, group, desc, own));
+}
+
+// The scale (`part` 0) or the strength of a layer, from 1.
+static const value_desc *describe_layer(effect *e, size_t layer, size_t part) {
+    static const value_desc parts[] = {
+        {.name = "scale",
+         .components = 1,
+         .min = 1e-6f,
+         .max = 1e6f,
+         .unit = "",
+         .help = "lumps of this layer in a metre; of a shell across its radius"},
+        {.name = "strength",
+         .components = 1,
+         .min = -1e6f,
+         .max = 1e6f,
+         .unit = "",
+         .help = "what this layer counts for beside the others"},
+    };
+    value_desc *desc = arena_copy(&e->memory, &parts[part], sizeof *desc);
+    desc->name = arena_format(&e->memory, "%s_%zu", parts[part].name, layer);
+    return desc;
+}
+
+const effect_layers *effect_add_layers(effect *e, const char *name, field *const (*values)[2],
+                                       size_t count, const value_desc *const *shared,
+                                       field *const *shared_values, size_t shared_count) {
+    effect_layers *l = arena_alloc(&e->memory, sizeof *l);
+    *l = (effect_layers){free_group(e, name), count};
+    MEM_RESERVE(e->layers, e->layers_count + 1, e->layers_capacity);
+    e->layers[e->layers_count++] = l;
+    e->field_count++;
+    for (size_t i = 0; i < 2 * count; i++) {
+        field *value = values[i / 2][i % 2];
+        const value_desc *desc = value ? describe_layer(e, i / 2 + 1, i % 2) : NULL;
+        if (value && !add_number(e, l->name, desc, value, i / 2 + 1)) return NULL;
+    }
+    for (size_t i = 0; i < shared_count; i++)
+        if (!add_number(e, l->name, shared[i], shared_values[i], 0)) return NULL;
+    return l;
+}
+
+size_t effect_layers_count(const effect *e) {
+    return e->layers_count;
+}
+
+const effect_layers *effect_get_layers(const effect *e, size_t index) {
+    return e->layers[index];
+}
+
+// ---- numbers that are read while the file loads -------------------------------------------------
 
 bool effect_add_loaded(effect *e, const char *group, const value_desc *desc, const void *made,
                        float *value) {

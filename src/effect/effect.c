@@ -114,6 +114,7 @@ void effect_destroy(effect *e) {
     mem_free(e->materials);
     mem_free(e->nodes);
     mem_free(e->shapes);
+    mem_free(e->layers);
     mem_free(e->instances);
     mem_free(e->files);
     mem_free(e->places);

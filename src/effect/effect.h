@@ -227,6 +227,23 @@ bool effect_has_room_for_field(const effect *e);
 // is listed among those that stand in space (things.h). False with a message when a setting of such
 // a name is wrong.
 bool effect_add_field(effect *e, const char *name, const field *node, field *const *values);
+// Layers of noise that one call of the script lists: layers { {2, 1}, {7, 0.4} }.
+typedef struct effect_layers {
+    const char *name; // of their controls: the variable, or "layers"
+    size_t count;
+} effect_layers;
+// Makes controls of the numbers that a list of layers was given: those of `values` (NULL: it is
+// none), of each layer its scale and its strength, as "lumps.scale_1" and "lumps.strength_1"; and
+// `shared_count` others of them all, as "lumps.seed". It counts as a field, for which there must be
+// room; effect_note_place may be told the result. NULL with a message: a setting of such a name is
+// wrong.
+const effect_layers *effect_add_layers(effect *e, const char *name, field *const (*values)[2],
+                                       size_t count, const value_desc *const *shared,
+                                       field *const *shared_values, size_t shared_count);
+size_t effect_layers_count(const effect *e);
+const effect_layers *effect_get_layers(const effect *e, size_t index);
+// Where the script lists them. NULL: that is not known.
+const effect_place *effect_layers_place(const effect *e, const effect_layers *l);
 // Makes a control "GROUP.NAME" of numbers that are read while the effect loads, of which `value`
 // has as many as `desc` says: a setting replaces them. `made` is what effect_note_place was told;
 // both and `desc` must live as long as the effect. False with a message when a setting is wrong.
@@ -275,6 +292,7 @@ typedef struct effect_control {
     const char *group;      // "camera", the name of a light, a pass ...; of a parameter as declared
     const value_desc *desc; // of a palette, a curve and events only what it is for
     size_t pass, index;     // of a pass, and of its uniform or option; of a parameter
+    size_t layer;           // of a list of layers, from 1, that the number is of; 0: of none
     const char *initial;    // as text, before any setting
     const char *moved;      // the setting that holds, as text; NULL: the script's own value
 } effect_control;

@@ -186,6 +186,8 @@ struct effect {
     bool *applied; // one per setting
     size_t setting_count;
 
+    effect_layers **layers;
+    size_t layers_count, layers_capacity;
     struct effect_shape *shapes; // things.h
     size_t shape_count, shape_capacity;
     struct effect_reading *readings;

@@ -59,6 +59,10 @@ const effect_place *effect_control_place(const effect *e, const effect_control *
     return own ? own : find_place(e, ((const control *)c)->owner);
 }
 
+const effect_place *effect_layers_place(const effect *e, const effect_layers *l) {
+    return find_place(e, l);
+}
+
 const effect_place *effect_pass_place(const effect *e, const pass *p) {
     return find_place(e, p);
 }

@@ -70,6 +70,15 @@ static void fill_structure(const roil_effect *e, const effect_control *c, roil_c
     out->structural = true;
 }
 
+// Returns whether only the first bit of a linear bar would be of use.
+static bool is_wide(const value_desc *desc) {
+    static const float DECADES = 1e3f, OFTEN = 50;
+    bool number = desc->type == VALUE_NUMBER || desc->type == VALUE_WHOLE;
+    if (!number || desc->min < 0 || !(desc->max > desc->min) || !isfinite(desc->max)) return false;
+    return desc->min > 0 ? desc->max >= DECADES * desc->min
+                         : desc->value[0] > 0 && desc->max >= OFTEN * desc->value[0];
+}
+
 void roil_get_control(roil_effect *e, size_t index, roil_control *out) {
     const effect_control *c = effect_get_control(e->effect, index);
     const value_desc *desc = c->desc;
@@ -88,6 +97,7 @@ void roil_get_control(roil_effect *e, size_t index, roil_control *out) {
         .words = desc->words,
         .word_count = desc->word_count,
         .field = c->kind == EFFECT_CONTROL_FIELD,
+        .layer = c->layer,
         .object = c->kind == EFFECT_CONTROL_LIGHT || c->kind == EFFECT_CONTROL_MATERIAL ||
                   c->kind == EFFECT_CONTROL_PLACE || c->kind == EFFECT_CONTROL_LOADED,
         .moved = c->moved != NULL};
@@ -97,6 +107,7 @@ void roil_get_control(roil_effect *e, size_t index, roil_control *out) {
         fill_structure(e, c, out);
     else if (desc->type != VALUE_OTHER)
         fill_field(e, c, out);
+    if (!out->parameter) out->log_scale = is_wide(desc);
     if (out->field) out->structural = effect_has_tiles(e->effect);
     if (c->kind == EFFECT_CONTROL_LOADED) out->structural = true;
 }

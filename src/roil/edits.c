@@ -3,41 +3,16 @@
 // (script/source.h). All else in a file stays as it is.
 #include "base/error.h"
 #include "base/memory.h"
-#include "roil/roil_impl.h"
-#include "script/source.h"
+#include "roil/edits_impl.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { SOURCE_MAX = 4 << 20, MOST_CALLS = 16, SHOWN = 48 };
-
-typedef struct replacement {
-    const char *control;
-    source_range at;
-    const char *text;
-} replacement;
-
-typedef struct edited_file {
-    const char *path;
-    char *before;
-    strbuf after;
-    replacement *list; // in the order of the text
-    size_t count, capacity;
-} edited_file;
-
-struct roil_edits {
-    arena memory;
-    const char *root; // the effect's folder, which files must lie in
-    bool pins;        // values become parameters
-    edited_file *files;
-    size_t file_count, file_capacity;
-    roil_edit *list;
-    size_t count, capacity;
-};
+enum { SOURCE_MAX = 4 << 20, MOST_CALLS = 16 };
 
 // ---- files --------------------------------------------------------------------------------------
 
-static edited_file *open_file(roil_edits *x, const char *path) {
+edited_file *edits_open_file(roil_edits *x, const char *path) {
     for (size_t i = 0; i < x->file_count; i++)
         if (strcmp(x->files[i].path, path) == 0) return &x->files[i];
     void *text;
@@ -49,7 +24,7 @@ static edited_file *open_file(roil_edits *x, const char *path) {
     return f;
 }
 
-static bool replace(roil_edits *x, edited_file *f, replacement r) {
+bool edits_replace(roil_edits *x, edited_file *f, edits_replacement r) {
     size_t at = f->count;
     while (at > 0 && f->list[at - 1].at.begin > r.at.begin) at--;
     bool overlaps = (at > 0 && f->list[at - 1].at.end > r.at.begin) ||
@@ -65,7 +40,7 @@ static bool replace(roil_edits *x, edited_file *f, replacement r) {
 
 // ---- finding the value --------------------------------------------------------------------------
 
-static bool is_same_place(const effect_place *a, const effect_place *b) {
+bool edits_same_place(const effect_place *a, const effect_place *b) {
     return a && b && a->line == b->line && strcmp(a->file, b->file) == 0 &&
            strcmp(a->call, b->call) == 0;
 }
@@ -91,19 +66,28 @@ static bool is_shared(const effect *e, const effect_control *c, const effect_pla
             is_loaded(other) != is_loaded(c))
             continue;
         if (!alone && strcmp(other->group, c->group) == 0) continue;
-        if (is_same_place(effect_control_place(e, other), place)) return true;
+        if (edits_same_place(effect_control_place(e, other), place)) return true;
     }
     return false;
 }
 
-static bool text_is(const char *text, source_range at, const char *word) {
+bool edits_text_is(const char *text, source_range at, const char *word) {
     size_t length = at.end - at.begin;
     return length == strlen(word) && strncmp(text + at.begin, word, length) == 0;
 }
 
 static bool quoted_is(const char *text, source_range at, const char *word) {
     return at.end - at.begin > 2 && strchr("\"'", text[at.begin]) &&
-           text_is(text, (source_range){at.begin + 1, at.end - 1}, word);
+           edits_text_is(text, (source_range){at.begin + 1, at.end - 1}, word);
+}
+
+// Returns whether a name is another one, or that with a number, as in "size_2".
+static bool is_numbered(const char *name, const char *other) {
+    size_t length = strlen(other);
+    const char *rest = name + length;
+    if (strncmp(name, other, length) != 0) return false;
+    return *rest == 0 ||
+           (*rest == '_' && rest[1] && strspn(rest + 1, "0123456789") == strlen(rest + 1));
 }
 
 // Returns whether the call says the name itself.
@@ -114,7 +98,9 @@ static bool names(const char *text, const source_call *call, const effect_contro
                quoted_is(text, value, c->name);
     if (source_find_value(text, call->table, "name", 0, &value))
         return quoted_is(text, value, is_ramp(c) ? c->name : c->group);
-    return is_ramp(c) && text_is(text, source_assigned_name(text, call), c->name);
+    char purpose[64];
+    return is_ramp(c) && source_purpose(text, call->name.begin, purpose, sizeof purpose) &&
+           is_numbered(c->name, purpose);
 }
 
 static bool find_call(const roil_effect *e, const effect_control *c, const effect_place *place,
@@ -136,11 +122,11 @@ static bool find_call(const roil_effect *e, const effect_control *c, const effec
 }
 
 // Copies what is written there, shortened, for messages.
-static void show(const char *text, source_range at, char out[SHOWN]) {
+void edits_show(const char *text, source_range at, char out[EDITS_SHOWN]) {
     size_t length = at.end - at.begin, line = strcspn(text + at.begin, "\n");
-    bool whole = length < SHOWN - 4 && line >= length;
+    bool whole = length < EDITS_SHOWN - 4 && line >= length;
     if (line < length) length = line;
-    if (length > SHOWN - 4) length = SHOWN - 4;
+    if (length > EDITS_SHOWN - 4) length = EDITS_SHOWN - 4;
     memcpy(out, text + at.begin, length);
     strcpy(out + length, whole ? "" : "...");
 }
@@ -159,12 +145,22 @@ static bool is_initial(const effect_control *c, const char *text, source_range a
     return same;
 }
 
+// Finds the scale or the strength of a layer of noise.
+static bool find_in_layer(const effect_control *c, const char *text, const source_call *call,
+                          source_range *out) {
+    source_range layer;
+    size_t part = strncmp(c->desc->name, "scale", strlen("scale")) == 0 ? 1 : 2;
+    return source_find_value(text, call->table, NULL, c->layer, &layer) &&
+           text[layer.begin] == '{' && source_find_value(text, layer, NULL, part, out);
+}
+
 static bool find_value(const effect_control *c, const char *text, const source_call *call,
                        const char *key, source_range *out) {
     if (is_ramp(c)) {
         *out = call->table;
         return true;
     }
+    if (c->layer) return find_in_layer(c, text, call, out);
     return is_param(c) ? source_find_value(text, call->table, NULL, 2, out)
                        : source_find_value(text, call->table, key, 0, out);
 }
@@ -200,7 +196,7 @@ static void print_ramp(const roil_effect *e, const effect_control *c, const char
     while (source_read_entry(made.text, (source_range){0, made.length}, entry.next, &entry))
         add_entry(out, made.text, entry.all, strbuf_text(&between));
     for (entry.next = old.begin + 1; source_read_entry(text, old, entry.next, &entry);)
-        if (text_is(text, entry.key, "name"))
+        if (edits_text_is(text, entry.key, "name"))
             add_entry(out, text, entry.all, strbuf_text(&between));
     source_range indent = indent_of(text, old.end - 1);
     if (line)
@@ -224,20 +220,25 @@ static bool put(roil_edits *x, edited_file *f, const effect_control *c, const so
         strbuf_add(&text, "%s%s = %s%s", first ? " " : ", ", key, value,
                    first && f->before[at.end] == '}' ? " " : "");
     }
-    bool done = replace(x, f, (replacement){c->name, at, strbuf_text(&text)});
+    bool done = edits_replace(x, f, (edits_replacement){c->name, at, strbuf_text(&text)});
     strbuf_free(&text);
     return done;
+}
+
+// What is for all layers of noise always has a name.
+static bool is_of_layers(const source_call *call, const char *text, const effect_control *c) {
+    return !c->layer && edits_text_is(text, call->name, "layers");
 }
 
 // False with a message that says why the value of `key` cannot be replaced.
 static bool check_value(const effect_control *c, const char *text, const source_call *call,
                         const char *key, bool compare) {
-    char shown[SHOWN];
+    char shown[EDITS_SHOWN];
     source_range at;
     if (!find_value(c, text, call, key, &at))
-        return (!is_param(c) && c->kind != EFFECT_CONTROL_FIELD) ||
+        return (!is_param(c) && c->kind != EFFECT_CONTROL_FIELD) || is_of_layers(call, text, c) ||
                err_set("it is not written there by its name");
-    show(text, at, shown);
+    edits_show(text, at, shown);
     if (!source_is_literal(text, at)) return err_set("it is computed there: %s", shown);
     if (compare && !is_initial(c, text, at))
         return err_set("what is written there, %s, is not what the effect began with", shown);
@@ -297,7 +298,7 @@ static bool write_control(roil_edits *x, roil_effect *e, const effect_control *c
     source_call call;
     if (c->kind == EFFECT_CONTROL_EVENTS) return err_set("clicks and keys are no part of a script");
     if (!place) return err_set("no file of the effect says it, or not in a table of its own");
-    edited_file *f = open_file(x, place->file);
+    edited_file *f = edits_open_file(x, place->file);
     if (!f) return false;
     if (!find_call(e, c, place, f->before, &call))
         return err_prefix("%s: ", path_name(place->file));
@@ -316,7 +317,7 @@ static bool write_control(roil_edits *x, roil_effect *e, const effect_control *c
 
 // ---- what will be written -----------------------------------------------------------------------
 
-static roil_edit *add_edit(roil_edits *x) {
+roil_edit *edits_add(roil_edits *x) {
     MEM_RESERVE(x->list, x->count + 1, x->capacity);
     x->list[x->count] = (roil_edit){.controls = ""};
     return &x->list[x->count++];
@@ -334,7 +335,7 @@ static size_t line_end(const char *text, size_t at) {
 // Adds the text from `begin` to `end` with the replacements that lie in it.
 static void add_replaced(const edited_file *f, size_t begin, size_t end, strbuf *out) {
     for (size_t i = 0; i < f->count; i++) {
-        const replacement *r = &f->list[i];
+        const edits_replacement *r = &f->list[i];
         if (r->at.begin < begin || r->at.end > end) continue;
         strbuf_append(out, f->before + begin, r->at.begin - begin);
         strbuf_add(out, "%s", r->text);
@@ -358,7 +359,7 @@ static void list_lines(roil_edits *x, const edited_file *f) {
             end = reach > end ? reach : end;
         }
         add_replaced(f, begin, end, &after);
-        roil_edit *edit = add_edit(x);
+        roil_edit *edit = edits_add(x);
         edit->controls = arena_string(&x->memory, strbuf_text(&controls));
         edit->file = f->path;
         for (size_t k = 0; k < begin; k++) edit->line += f->before[k] == '\n';
@@ -370,9 +371,9 @@ static void list_lines(roil_edits *x, const edited_file *f) {
     }
 }
 
-static void add_control(roil_edits *x, roil_effect *e, const effect_control *c) {
+void edits_add_control(roil_edits *x, roil_effect *e, const effect_control *c) {
     if (write_control(x, e, c)) return;
-    roil_edit *edit = add_edit(x);
+    roil_edit *edit = edits_add(x);
     edit->controls = arena_string(&x->memory, c->name);
     edit->refusal = arena_string(&x->memory, err_get());
 }
@@ -386,20 +387,30 @@ static bool is_overruled(roil_effect *e, const effect_control *c) {
     return eye && eye->moved;
 }
 
-// `one`: NULL for all that were moved.
-static roil_edits *create_edits(roil_effect *e, const effect_control *one, bool pins) {
+roil_edits *edits_begin(const roil_effect *e) {
     roil_edits *x = mem_alloc(sizeof *x);
-    x->pins = pins;
     x->root = arena_string(&x->memory, effect_root(e->effect)); // which may end before
-    for (size_t i = 0; i < effect_control_count(e->effect); i++) {
-        const effect_control *c = effect_get_control(e->effect, i);
-        if ((c->moved || pins) && (!one || one == c) && !is_overruled(e, c)) add_control(x, e, c);
-    }
+    return x;
+}
+
+void edits_end(roil_edits *x) {
     for (size_t i = 0; i < x->file_count; i++) {
         edited_file *f = &x->files[i];
         list_lines(x, f);
         add_replaced(f, 0, strlen(f->before), &f->after);
     }
+}
+
+// `one`: NULL for all that were moved.
+static roil_edits *create_edits(roil_effect *e, const effect_control *one, bool pins) {
+    roil_edits *x = edits_begin(e);
+    x->pins = pins;
+    for (size_t i = 0; i < effect_control_count(e->effect); i++) {
+        const effect_control *c = effect_get_control(e->effect, i);
+        if ((c->moved || pins) && (!one || one == c) && !is_overruled(e, c))
+            edits_add_control(x, e, c);
+    }
+    edits_end(x);
     return x;
 }
 

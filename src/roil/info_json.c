@@ -234,6 +234,7 @@ static json_t *control_json(roil_effect *e, size_t index) {
     roil_free(text);
     set_text(out, "label", c.label);
     set_text(out, "group", c.group);
+    if (c.layer) json_object_set_new(out, "layer", json_integer((json_int_t)c.layer));
     set_true(out, "parameter", c.parameter);
     set_true(out, "log", c.log_scale);
     set_true(out, "structural", c.structural);

@@ -54,7 +54,7 @@ static const script_object reference_words[] = {
     {"layers", "noise", "layers { {2, 1}, {7, 0.4}, seed = 3 }",
      "the layered noise of a layered explosion, 0..1: a sum over {scale, strength} of noise at each scale times "
      "its strength, divided by all strengths. Of a shell: at the unit sphere. Other keys are those of the noise",
-     .args = KEYS(KEY("layer ...", "{scale, strength}", "1 to 8")),
+     .args = KEYS(KEY("layer ...", "{scale, strength}", "1 to 64")),
      .keys = KEYS(
         KEY("noise", "perlin", "perlin, simplex, value or worley: what makes it"),
         KEY("dimensions", "3", "2: a picture that is wrapped around the origin, as published; scales are rounded"),

@@ -148,6 +148,7 @@ static int open_bindings(lua_State *L) {
     l_param_open(L);
     l_curve_open(L);
     l_palette_open(L);
+    l_layers_open(L);
     l_grid_open(L);
     l_scene_open(L);
     l_light_open(L);

@@ -43,6 +43,10 @@ static void head(const grid *g, float x, float y, float dx,
                 at_y(g, y + dy * length), at_x(g, x + dy * half), at_y(g, y - dx * half), g->color);
 }
 
+static void stroke(const grid *g, float left, float top, float right, float bottom) {
+    ui_line(at_x(g, left), at_y(g, top), at_x(g, right), at_y(g, bottom), g->color, 1.6f * g->unit);
+}
+
 static void sheet(const grid *g, float left, float top) {
     ui_frame((ui_rect){at_x(g, left), at_y(g, top), at_x(g, left + 7), at_y(g, top + 8.5f)},
              g->color, 1.5f * g->unit, 1.4f * g->unit);
@@ -91,6 +95,10 @@ void draw_icon(int icon, ui_rect area, uint32_t color) {
     case UI_ICON_COPY:
         sheet(&g, 3, 2.5f);
         sheet(&g, 6, 5);
+        break;
+    case UI_ICON_REMOVE:
+        stroke(&g, 4, 4, 12, 12);
+        stroke(&g, 4, 12, 12, 4);
         break;
     }
 }

@@ -138,6 +138,7 @@ typedef enum ui_icon {
     UI_ICON_LOOP,
     UI_ICON_RESET,
     UI_ICON_COPY,
+    UI_ICON_REMOVE,
     UI_ICON_COUNT
 } ui_icon;
 

@@ -236,8 +236,8 @@ static void a_number_becomes_a_parameter(void **state) {
     assert_int_equal(roil_edits_list(x, &edit, 1), 1);
     assert_string_equal(edit.after,
                         "local lumps = worley { frequency = param { \"lumps_frequency\", 4, min = "
-                        "1e-06, max = 1e+06, unit = \"1/m\", help = \"lattice cells a metre, of "
-                        "the first octave\" }, octaves = 3, seed = 1 }");
+                        "1e-06, max = 1e+06, log = true, unit = \"1/m\", help = \"lattice cells "
+                        "a metre, of the first octave\" }, octaves = 3, seed = 1 }");
     roil_edits_free(x);
     x = roil_edits_create_parameter(e, "march.steps"); // which the script leaves open
     assert_int_equal(roil_edits_list(x, &edit, 1), 1);
@@ -312,6 +312,111 @@ static void modules_of_the_effect_are_written(void **state) {
     mem_free(data);
 }
 
+// ---- layers of noise
+// ------------------------------------------------------------------------------
+
+static const char layers_text[] =
+    "local fx = effect { }\n"
+    "local size = param { 'size', 3 }\n"
+    "local lumps = layers { {2, 1}, {size, 0.5}, seed = 4, fractal = 'billow' } -- both\n"
+    "local dust = layers {\n"
+    "  {1, 1}, -- coarse\n"
+    "  {4, 0.5}, -- fine\n"
+    "  speed = 0.5,\n"
+    "}\n"
+    "local one = layers { {3, 1} }\n"
+    "local list = { {1, 1}, {2, 1} }\n"
+    "local made = layers(list)\n"
+    "local part = layers { {1, 1}, list[2] }\n"
+    "fx.output = march { density = sphere { } * (lumps + dust + one + made + part) }\n";
+
+// Changes a list of layers; of the file's text `before` becomes `after`.
+static void layer_changes(const char *list, size_t layer, roil_layer_change how, const char *before,
+                          const char *after, const roil_setting *moved, size_t count) {
+    roil_effect *e = roil_open(layers_text, moved, count);
+    roil_edits *x = roil_edits_create_layer(e, list, layer, how);
+    need(x);
+    char path[PATH_CAP];
+    const char *at = strstr(layers_text, before);
+    assert_non_null(at);
+    strbuf expected = {0};
+    strbuf_add(&expected, "%.*s%s%s", (int)(at - layers_text), layers_text, after,
+               at + strlen(before));
+    need(roil_edits_write(x));
+    file_is(strbuf_text(&expected));
+    helper_path(path, "e.lua");
+    roil_effect *again = roil_load(helper_roil, path, NULL, 0);
+    need(again);
+    roil_unload(again);
+    need(roil_edits_undo(x));
+    file_is(layers_text);
+    strbuf_free(&expected);
+    roil_edits_free(x);
+    roil_unload(e);
+}
+
+static void layers_come_and_go(void **state) {
+    (void)state;
+    const roil_setting moved[] = {{"lumps.scale_1", "2.5"}, {"lumps.seed", "9"}};
+    layer_changes("lumps", 0, ROIL_LAYER_ADD, "{size, 0.5},", "{size, 0.5}, {2 * size, 0.25},",
+                  NULL, 0);
+    layer_changes("lumps", 2, ROIL_LAYER_DUPLICATE, "{size, 0.5},", "{size, 0.5}, {size, 0.5},",
+                  NULL, 0);
+    layer_changes("lumps", 1, ROIL_LAYER_REMOVE, "{2, 1}, {size", "{size", NULL, 0);
+    layer_changes("lumps", 1, ROIL_LAYER_DUPLICATE, "{2, 1}, {size, 0.5}, seed = 4",
+                  "{2.5, 1}, {2.5, 1}, {size, 0.5}, seed = 4", moved, 2);
+    layer_changes("lumps", 1, ROIL_LAYER_REMOVE, "{2, 1}, {size", "{size", moved, 2);
+    layer_changes("dust", 0, ROIL_LAYER_ADD, "{4, 0.5},", "{4, 0.5},\n  {8, 0.25},", NULL, 0);
+    layer_changes("dust", 1, ROIL_LAYER_DUPLICATE, "{1, 1}, -- coarse",
+                  "{1, 1},\n  {1, 1}, -- coarse", NULL, 0);
+    layer_changes("dust", 2, ROIL_LAYER_REMOVE, "{4, 0.5}, -- fine\n  speed", "speed", NULL, 0);
+    layer_changes("one", 0, ROIL_LAYER_ADD, "{3, 1} }", "{3, 1}, {6, 0.5} }", NULL, 0);
+}
+
+static void numbers_of_layers_are_written(void **state) {
+    (void)state;
+    const roil_setting moved[] = {
+        {"lumps.strength_2", "0.75"}, {"dust.scale_2", "5"}, {"dust.seed", "8"}};
+    roil_effect *e = roil_open(layers_text, moved, COUNT_OF(moved));
+    roil_layers all[8];
+    assert_int_equal(roil_list_layers(e, all, COUNT_OF(all)), 5);
+    assert_string_equal(all[1].name, "dust");
+    assert_int_equal(all[1].count, 2);
+    roil_edits *x = edits_of(e, NULL);
+    roil_edit list[4];
+    assert_int_equal(roil_edits_list(x, list, COUNT_OF(list)), 3);
+    assert_string_equal(list[0].after,
+                        "local lumps = layers { {2, 1}, {size, 0.75}, seed = 4, fractal = 'billow' "
+                        "} -- both");
+    assert_string_equal(list[1].after, "  {5, 0.5}, -- fine");
+    assert_string_equal(list[2].after, "  speed = 0.5, seed = 8,");
+    roil_edits_free(x);
+    roil_unload(e);
+}
+
+static void layers_stay(roil_effect *e, const char *name, size_t layer, roil_layer_change how,
+                        const char *why) {
+    roil_edits *x = roil_edits_create_layer(e, name, layer, how);
+    roil_edit edit;
+    need(x);
+    assert_int_equal(roil_edits_list(x, &edit, 1), 1);
+    assert_non_null(edit.refusal);
+    if (!strstr(edit.refusal, why)) fail_msg("%s: %s", name, edit.refusal);
+    roil_edits_free(x);
+}
+
+static void computed_layers_stay(void **state) {
+    (void)state;
+    roil_effect *e = roil_open(layers_text, NULL, 0);
+    layers_stay(e, "made", 0, ROIL_LAYER_ADD, "has no call of 'layers' with a table");
+    layers_stay(e, "part", 0, ROIL_LAYER_ADD, "layer 2 is computed there: list[2]");
+    layers_stay(e, "one", 1, ROIL_LAYER_REMOVE, "the last layer stays");
+    assert_null(roil_edits_create_layer(e, "none", 1, ROIL_LAYER_ADD));
+    assert_null(roil_edits_create_layer(e, "one", 2, ROIL_LAYER_REMOVE));
+    assert_non_null(strstr(roil_error(), "'one' has no layer 2; it has 1"));
+    roil_unload(e);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(all_kinds_are_written),
@@ -323,6 +428,9 @@ int main(void) {
         cmocka_unit_test(a_tile_follows_by_another_load),
         cmocka_unit_test(a_file_that_changed_is_left_alone),
         cmocka_unit_test(modules_of_the_effect_are_written),
+        cmocka_unit_test(layers_come_and_go),
+        cmocka_unit_test(numbers_of_layers_are_written),
+        cmocka_unit_test(computed_layers_stay),
     };
     return cmocka_run_group_tests(tests, roil_setup, roil_teardown);
 }
