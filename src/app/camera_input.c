@@ -6,8 +6,8 @@
 
 static const float TURN = 0.3f;   // degrees a unit
 static const float ABOVE = 0.01f; // of the ground, by the distance of what is looked at
-static const float LONG_LENS = 1, STEEP = 89, HALF = 0.00872665f; // degrees, and to half in radians
-enum { RAISES = 4 }; // at most: ground that slopes is another where the eye then is
+static const float STEEP = 89;    // degrees
+enum { RAISES = 4 };              // at most: ground that slopes is another where the eye then is
 
 // Starts from the camera that the user moved last; after a reload or a reset, from the one that the
 // effect was drawn with.
@@ -25,11 +25,18 @@ static void set_point(live *l, const char *name, const float p[3]) {
     live_set(l, name, text);
 }
 
+static void set_number(live *l, const char *name, float value) {
+    char text[32];
+    snprintf(text, sizeof text, "%.6g", (double)value);
+    live_set(l, name, text);
+}
+
 static void put_down(live *l) {
     roil_camera camera;
     orbit_to(&l->camera, &camera);
     set_point(l, "camera.eye", camera.eye);
     set_point(l, "camera.target", camera.target);
+    if (camera.orthographic > 0) set_number(l, "camera.orthographic", camera.orthographic);
     l->camera_moved = true;
     branches_forget(l);
 }
@@ -81,44 +88,22 @@ void camera_frame(live *l) {
     put_down(l);
 }
 
-static void reset_lens(live *l) {
-    live_reset(l, "camera.fov");
-    live_reset(l, "camera.near");
-    live_reset(l, "camera.far");
-}
-
 void camera_reset(live *l) {
     if (!l->effect) return;
     live_reset(l, "camera.eye");
     live_reset(l, "camera.target");
+    live_reset(l, "camera.orthographic");
     branches_forget(l);
-    reset_lens(l);
     l->camera_moved = false;
 }
 
 // ---- without perspective ------------------------------------------------------------------------
 
-static void set_number(live *l, const char *name, float value) {
-    char text[32];
-    snprintf(text, sizeof text, "%.6g", (double)value);
-    live_set(l, name, text);
-}
-
-// Changes the lens and the distance together: what is looked at keeps its size.
-static void change_lens(live *l, float fov) {
-    l->camera.distance *= tanf(l->camera.fov * HALF) / tanf(fov * HALF);
-    l->camera.fov = fov;
-}
-
-// A long lens far away: lines along the view meet a hundredth as much as others.
 static void look_along(live *l, float yaw, float pitch) {
     if (!take_up(l)) return;
-    change_lens(l, LONG_LENS);
+    orbit_flatten(&l->camera);
     l->camera.yaw = yaw;
     l->camera.pitch = pitch;
-    set_number(l, "camera.fov", LONG_LENS);
-    set_number(l, "camera.near", l->camera.distance * 0.1f);
-    set_number(l, "camera.far", l->camera.distance * 10);
     put_down(l);
 }
 
@@ -135,11 +120,9 @@ void camera_top(live *l) {
 }
 
 void camera_perspective(live *l) {
-    roil_camera camera;
-    if (!take_up(l)) return;
-    reset_lens(l);
-    if (!roil_get_camera(l->effect, &camera)) return;
-    change_lens(l, camera.fov);
+    if (!take_up(l) || l->camera.orthographic == 0) return;
+    orbit_deepen(&l->camera);
     l->camera.pitch = fminf(l->camera.pitch, STEEP);
+    live_set(l, "camera.orthographic", "0");
     put_down(l);
 }

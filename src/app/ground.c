@@ -14,9 +14,10 @@ bool view_lens(const live *l, lens *out) {
     return true;
 }
 
-// As if the picture were taken by a lens of 40 degrees: a long one stands far away.
-static float near_distance(const roil_camera *c) {
-    return c->distance * tanf(c->fov * 0.00872665f) / 0.364f;
+float near_distance(const roil_camera *c) {
+    orbit seen;
+    orbit_from(&seen, c);
+    return orbit_height(&seen) / 0.728f;
 }
 
 float ground_step(const live *l) {

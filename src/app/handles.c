@@ -26,7 +26,8 @@ static const uint32_t axis_colors[3] = {0xff4a4af0, 0xff4ac85a, 0xfff08a4a};
 struct handles {
     roil_handle list[MOST];
     size_t count;
-    bool own_camera;          // the view is the script's camera, whose own handles lie in the eye
+    float eye[3], clear;      // of the view, and how far from it what is in its way must be (m)
+    lens held;                // the view when a drag began: a camera may move with its own keys
     float middle[3], sun_far; // of the sun's dome (m)
     int hovered, chosen;      // indices; NONE
     int axis;                 // that the chosen one is dragged along; NONE: none
@@ -76,13 +77,12 @@ static void gather(live *l) {
     h->count = h->count < MOST ? h->count : MOST;
     if (!h->dragging) {
         memcpy(h->middle, camera.target, sizeof h->middle);
-        h->sun_far = camera.distance * tanf(glm_rad(camera.fov) / 2) / 0.364f * SUN_FAR;
+        h->sun_far = near_distance(&camera) * SUN_FAR;
     }
-    h->own_camera = false;
+    memcpy(h->eye, camera.eye, sizeof h->eye);
+    h->clear = 0.02f * camera.distance;
     for (size_t i = 0; i < h->count; i++) {
         roil_handle *one = &h->list[i];
-        if (one->thing == ROIL_CAMERA && one->key == SIZE_MAX)
-            h->own_camera = glm_vec3_distance(one->at, camera.eye) < 1e-3f * camera.distance;
         if (h->chosen != NONE && is_same(h, one)) chosen = (int)i;
         if (one->thing != ROIL_SUN) continue;
         glm_vec3_scale(one->at, h->sun_far, one->at);
@@ -92,8 +92,11 @@ static void gather(live *l) {
     if (chosen == NONE) h->dragging = false;
 }
 
+// A camera that one looks through lies in the eye, and so may keys of its path.
 static bool is_seen(const handles *h, size_t i) {
-    return h->list[i].thing != ROIL_CAMERA || !h->own_camera;
+    const roil_handle *one = &h->list[i];
+    return one->thing != ROIL_CAMERA || (h->dragging && (int)i == h->chosen) ||
+           glm_vec3_distance((float *)(uintptr_t)one->at, (float *)(uintptr_t)h->eye) > h->clear;
 }
 
 // ---- what is under the pointer ------------------------------------------------------------------
@@ -210,6 +213,7 @@ static void begin(handles *h, const lens *view, const ui_canvas *c) {
     float at[2];
     if (!one->control || !lens_project(view, one->at, at)) return;
     h->dragging = true;
+    h->held = *view;
     h->grab[0] = at[0] - c->x;
     h->grab[1] = at[1] - c->y;
     memcpy(h->from, one->at, sizeof h->from);
@@ -233,7 +237,8 @@ bool handles_input(live *l, const ui_canvas *c) {
     bool mine = h->dragging || (h->hovered != NONE && c->held);
     if (!h->dragging) return mine;
     const bool structural = h->list[h->chosen].structural;
-    if ((c->dx != 0 || c->dy != 0) && !c->pressed) find_goal(h, l, &view, c);
+    const bool camera = h->list[h->chosen].thing == ROIL_CAMERA;
+    if ((c->dx != 0 || c->dy != 0) && !c->pressed) find_goal(h, l, camera ? &h->held : &view, c);
     if (!structural || !c->held) put(l);
     if (!c->held) h->dragging = false;
     return true;

@@ -3,6 +3,7 @@
 #include <math.h>
 
 static const float NEAR = 1e-3f; // of what is drawn, in units of the eye's distance from the target
+static const float HEIGHTS = 1000; // as scene/scene.c has it: how far without perspective
 
 typedef float *vector; // cglm takes no const
 
@@ -22,6 +23,12 @@ lens lens_make(const roil_camera *camera, ui_rect view, float aspect) {
     glm_vec3_crossn(l.forward, up, l.right);
     glm_vec3_cross(l.right, l.forward, l.up);
     l.half[1] = tanf(glm_rad(camera->fov) / 2);
+    if (camera->orthographic > 0) {
+        float distance = HEIGHTS * camera->orthographic;
+        glm_vec3_copy(of(camera->target), l.eye);
+        glm_vec3_muladds(l.forward, -distance, l.eye);
+        l.half[1] = 0.5f / HEIGHTS;
+    }
     l.half[0] = l.half[1] * aspect;
     float width = view.right - view.left, height = view.bottom - view.top;
     float less = width - fminf(width, height * aspect);
@@ -119,11 +126,13 @@ bool lens_on_line(const lens *l, float x, float y, const float p[3], const float
 
 void lens_on_sphere(const lens *l, float x, float y, const float centre[3], float radius, bool far,
                     float out[3]) {
-    vec3 ray, from;
+    vec3 ray, from, aside;
     lens_ray(l, x, y, ray);
     glm_vec3_sub(of(centre), of(l->eye), from);
     float middle = glm_vec3_dot(ray, from);
-    float half = sqrtf(fmaxf(radius * radius - glm_vec3_norm2(from) + middle * middle, 0));
+    glm_vec3_copy(from, aside); // squares of a long way would leave nothing of a short one
+    glm_vec3_muladds(ray, -middle, aside);
+    float half = sqrtf(fmaxf(radius * radius - glm_vec3_norm2(aside), 0));
     glm_vec3_copy(of(l->eye), out);
     glm_vec3_muladds(ray, middle + (far ? half : -half), out);
 }

@@ -136,7 +136,7 @@ void write_back_close(live *l);
 void camera_input(live *l, const ui_canvas *view); // handles the pointer over the picture
 void camera_frame(live *l);                        // makes the volume fill the picture
 void camera_reset(live *l);                        // returns to the script's camera
-// Look along an axis with a long lens, which has next to no perspective; and with the script's.
+// Look along an axis without perspective; and with perspective again.
 void camera_front(live *l);
 void camera_side(live *l);
 void camera_top(live *l);

@@ -21,7 +21,7 @@ static axes axes_of(const orbit *o) {
 
 void orbit_from(orbit *o, const roil_camera *camera) {
     float distance;
-    *o = (orbit){.fov = camera->fov};
+    *o = (orbit){.fov = camera->fov, .orthographic = camera->orthographic};
     orbit_angles(camera->eye, camera->target, &distance, &o->yaw, &o->pitch);
     o->distance = clampf(distance, MIN_DISTANCE, MAX_DISTANCE);
     glm_vec3_copy((float *)camera->target, o->target);
@@ -29,7 +29,7 @@ void orbit_from(orbit *o, const roil_camera *camera) {
 
 void orbit_to(const orbit *o, roil_camera *out) {
     axes a = axes_of(o);
-    *out = (roil_camera){.fov = o->fov};
+    *out = (roil_camera){.fov = o->fov, .orthographic = o->orthographic};
     glm_vec3_copy((float *)o->target, out->target);
     glm_vec3_scale(a.back, o->distance, a.back);
     glm_vec3_add((float *)o->target, a.back, out->eye);
@@ -40,15 +40,30 @@ void orbit_turn(orbit *o, float dx, float dy) {
     o->pitch = clampf(o->pitch + dy, -MAX_PITCH, MAX_PITCH);
 }
 
+float orbit_height(const orbit *o) {
+    return o->orthographic > 0 ? o->orthographic : 2 * o->distance * tanf(glm_rad(o->fov) / 2);
+}
+
+void orbit_flatten(orbit *o) {
+    o->orthographic = orbit_height(o);
+}
+
+void orbit_deepen(orbit *o) {
+    if (o->orthographic > 0) o->distance = o->orthographic / (2 * tanf(glm_rad(o->fov) / 2));
+    o->orthographic = 0;
+}
+
 void orbit_pan(orbit *o, float dx, float dy) {
     axes a = axes_of(o);
-    float height = 2 * o->distance * tanf(glm_rad(o->fov) / 2); // of the picture, at the target
+    float height = orbit_height(o);
     glm_vec3_muladds(a.right, -dx * height, o->target);
     glm_vec3_muladds(a.up, dy * height, o->target);
 }
 
+// Without perspective less is seen, and the eye stays: what is before it would be cut off.
 void orbit_zoom(orbit *o, float steps) {
-    o->distance = clampf(o->distance * powf(ZOOM_STEP, steps), MIN_DISTANCE, MAX_DISTANCE);
+    float *size = o->orthographic > 0 ? &o->orthographic : &o->distance;
+    *size = clampf(*size * powf(ZOOM_STEP, steps), MIN_DISTANCE, MAX_DISTANCE);
 }
 
 void orbit_raise(orbit *o, float height, bool shift) {
@@ -63,7 +78,7 @@ void orbit_frame(orbit *o, const float low[3], const float high[3], float aspect
     float vertical = tanf(glm_rad(o->fov) / 2), horizontal = vertical * fmaxf(aspect, 1e-3f);
     axes a = axes_of(o);
     for (int i = 0; i < 3; i++) o->target[i] = (low[i] + high[i]) / 2;
-    float distance = MIN_DISTANCE;
+    float distance = MIN_DISTANCE, height = 0;
     for (int corner = 0; corner < 8; corner++) { // each must lie within the four sides
         vec3 p;
         for (int i = 0; i < 3; i++) p[i] = (corner >> i & 1 ? high[i] : low[i]) - o->target[i];
@@ -71,6 +86,8 @@ void orbit_frame(orbit *o, const float low[3], const float high[3], float aspect
         float across = fabsf(glm_vec3_dot(p, a.right)) * MARGIN / horizontal;
         float along = fabsf(glm_vec3_dot(p, a.up)) * MARGIN / vertical;
         distance = fmaxf(distance, nearer + fmaxf(across, along));
+        height = fmaxf(height, 2 * vertical * fmaxf(across, along));
     }
+    if (o->orthographic > 0) o->orthographic = height;
     o->distance = clampf(distance, MIN_DISTANCE, MAX_DISTANCE);
 }

@@ -149,6 +149,18 @@ static const float across[3] = {1, 0, 0};
 
 // ---- things -------------------------------------------------------------------------------------
 
+// What the script has it look at, where keys say that.
+static void add_camera_target(points *all) {
+    effect *e = all->e->effect;
+    const effect_control *target = effect_control_named(e, "camera", "target");
+    if (!target) return;
+    const field *own =
+        target->moved ? effect_control_original(target) : effect_control_field(e, target);
+    const effect_control *way = own ? effect_control_behind(e, own) : NULL;
+    point p = point_of(ROIL_CAMERA, "camera", "target", own);
+    if (way && way->kind == EFFECT_CONTROL_CURVE && way->desc->components != 1) add_place(all, &p);
+}
+
 static void add_camera(points *all) {
     const effect_control *eye = effect_control_named(all->e->effect, "camera", "eye");
     point p = point_of(ROIL_CAMERA, "camera", "position", NULL);
@@ -157,9 +169,9 @@ static void add_camera(points *all) {
         eye->moved ? effect_control_original(eye) : effect_control_field(all->e->effect, eye);
     p.face.moves = true;
     add(all, &p);
-    if (!own) return;
     p.node = own;
-    add_keys(all, &p);
+    if (own) add_keys(all, &p);
+    add_camera_target(all);
 }
 
 static void add_sun(points *all) {

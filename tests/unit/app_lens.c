@@ -10,6 +10,7 @@ static const roil_camera cameras[] = {
     {.eye = {4, -12, 3.36f}, .target = {4, 4, 3.36f}, .fov = 31.89f},
     {.eye = {-3, 2, 8}, .target = {1, 1, 1}, .fov = 60},
     {.eye = {0, 0, 50}, .target = {0, 0, 0}, .fov = 1}, // from above
+    {.eye = {-9, 0, 1}, .target = {0, 0, 1}, .fov = 40, .orthographic = 6},
 };
 
 static void near3(const float a[3], const float b[3], float within) {
@@ -46,6 +47,18 @@ static void x_is_right_and_z_is_up(void **state) {
     l = lens_make(&cameras[2], view, 4 / 3.0f);
     assert_true(lens_project(&l, (float[]){0, 0.1f, 0}, up));
     assert_true(up[1] < 310); // +Y is up where one looks down
+}
+
+static void without_perspective_depth_changes_nothing(void **state) {
+    (void)state;
+    lens l = lens_make(&cameras[3], view, 4 / 3.0f);
+    float near[2], far[2];
+    assert_true(lens_project(&l, (float[]){-3, -1, 2}, near));
+    assert_true(lens_project(&l, (float[]){3, -1, 2}, far));
+    assert_float_equal(near[0], far[0], 0.6f);
+    assert_float_equal(near[1], far[1], 0.6f);
+    assert_float_equal(near[0] - 410, 100, 0.5f); // 6 m are the 600 pixels of its height
+    assert_float_equal(320 - near[1], 100, 0.5f);
 }
 
 static void rays_go_through_what_is_projected(void **state) {
@@ -91,6 +104,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_is_looked_at_is_in_the_middle),
         cmocka_unit_test(x_is_right_and_z_is_up),
+        cmocka_unit_test(without_perspective_depth_changes_nothing),
         cmocka_unit_test(rays_go_through_what_is_projected),
         cmocka_unit_test(what_is_behind_is_not_seen),
     };

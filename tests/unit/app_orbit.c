@@ -157,6 +157,25 @@ static void a_framed_box_is_seen_whole(void **state) {
             }
 }
 
+static void without_perspective_the_eye_stays(void **state) {
+    (void)state;
+    orbit o = {.distance = 5, .fov = 40}, before = o;
+    orbit_flatten(&o);
+    float height = orbit_height(&o);
+    assert_float_equal(height, 2 * 5 * tanf(glm_rad(20)), 1e-5f);
+    orbit_zoom(&o, 2);
+    assert_true(o.distance == 5 && orbit_height(&o) < height);
+    orbit_zoom(&o, 1e4f);
+    assert_true(o.orthographic > 0);
+    o = before;
+    orbit_flatten(&o);
+    orbit_frame(&o, (float[]){-1, -1, 0}, (float[]){1, 1, 4}, 2);
+    assert_true(o.orthographic > 4 && o.orthographic < 4.5f);
+    orbit_deepen(&o);
+    assert_true(o.orthographic == 0);
+    assert_float_equal(orbit_height(&o), 4.32f, 0.02f);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_goes_in_comes_out),
@@ -167,6 +186,7 @@ int main(void) {
         cmocka_unit_test(a_raised_eye_is_as_high_as_said),
         cmocka_unit_test(zooming_never_reaches_the_target),
         cmocka_unit_test(a_framed_box_is_seen_whole),
+        cmocka_unit_test(without_perspective_the_eye_stays),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

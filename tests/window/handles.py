@@ -175,16 +175,48 @@ class Handles(Case):
         live.wait_until(lambda: "probe" not in live.widgets(), "the picture alone")
         live.quit()
 
+    def test_keys_of_the_camera_that_one_looks_through(self):
+        """Dragged, they move the view itself; written, the file says the path."""
+        effect = STAGE.replace("orbit { target = {0, 0, 1}, distance = 8, pitch = 0 }", """camera {
+  eye = curve { {0, {0, -8, 1}}, {1, {1.5, -4, 1}}, {2, {3, -2, 2}}, shape = "linear" },
+  target = curve { {0, {0, 0, 1}}, {2, {-1, 0, 1.5}}, shape = "linear" },
+}""")
+        live = self.shown(effect=effect)
+        live.wait_until(lambda: "handle camera_eye.key 2" in live.widgets(), "the keys")
+        self.assertNotIn("handle camera_eye.key 1", live.widgets())  # in the eye
+        before = self.picture(live)
+        self.pull(live, "handle camera_eye.key 2", 0, -40)
+        live.expect(r"live: set camera_eye = linear 0 0,-8,1; 1 [^;]*,1\.[1-9]\d*; 2 3,-2,2$")
+        self.pull(live, "handle camera_target.key 1", 60, 0)
+        live.expect(r"live: set camera_target = ")
+        live.wait_until(lambda: difference(before, self.picture(live)) > 8, "another view")
+        live.keys("w")
+        live.click_on("write")
+        live.expect("live: wrote back 2")
+        text = self.read("puff.lua")
+        self.assertRegex(text, r"eye = curve \{ \{0, \{0, -8, 1\}\}, \{1, \{1\.\d+, -4, 1\.\d+\}\}")
+        self.assertNotIn("target = curve { {0, {0, 0, 1}}", text)
+        live.quit()
+
     def test_without_perspective(self):
         live = self.shown("--set", "camera.pitch=20")
         before = live.middle("handle other.position")
         live.keys("3")
-        live.expect("live: set camera.fov = 1")
+        live.expect(r"live: set camera.orthographic = 5\.8")
         live.expect("live: drew")
         live.wait_until(lambda: abs(live.middle("handle other.position")[1] - live.middle("handle ball.position")[1]) < 2,
                         "a view from above")
-        live.keys("0", "r")
+        live.keys("1")
+        live.expect(r"live: set camera.eye = -?[\d.e-]+,-8,1$")
+        left, top, right, _ = live.widget(VIEW)
+        live.click((left + right) / 2, top + 40, 4)
+        live.expect(r"live: set camera.orthographic = 5\.1")
+        live.keys("0")
+        live.expect("live: set camera.orthographic = 0")
+        live.keys("r")
         live.wait_until(lambda: live.middle("handle other.position") == before, "the script's camera")
+        live.keys("ctrl+z", "ctrl+z", "ctrl+z")
+        live.expect("live: undid camera")
         live.quit()
 
 
