@@ -1,5 +1,5 @@
 #include "app/opening.h"
-#include "app/app.h"
+#include "app/starts.h"
 #include "base/error.h"
 #include "base/memory.h"
 #include "base/str.h"
@@ -17,31 +17,19 @@ void opening_free(opening *o) {
 
 // ---- new files ----------------------------------------------------------------------------------
 
-static char *read_start(const char *home, const char *name) {
-    char folder[PATH_CAP], path[PATH_CAP], file[PATH_CAP];
-    void *text;
-    size_t size;
-    snprintf(file, sizeof file, "scripts/start/%s.lua", name);
-    if (!path_join(folder, home, "") || !path_join(path, folder, file) ||
-        !file_read(path, MOST_TEXT, &text, &size))
-        return NULL;
-    return text;
-}
-
-static bool write_new(const char *home, const char *from, const char *name, opening *out) {
+static bool write_new(roil *r, const char *from, const char *name, opening *out) {
+    char file[PATH_CAP];
+    size_t copied;
     if (!str_is_identifier(name))
         return err_set("'%s' is no name for an effect: letters, digits and _", name);
     snprintf(out->file, sizeof out->file, "%s.lua", name);
     if (file_exists(out->file)) return err_set("there is a %s already", out->file);
-    char *text = read_start(home, from);
-    bool done = text && file_write(out->file, text, strlen(text));
-    mem_free(text);
-    return done;
+    return starts_find(roil_home(r), from, file) && starts_write(r, file, ".", name, &copied);
 }
 
-bool opening_new(const char *home, const char *from, const char *name, opening *out) {
+bool opening_new(roil *r, const char *from, const char *name, opening *out) {
     *out = (opening){.recipe = NULL};
-    bool done = write_new(home, from, name, out);
+    bool done = write_new(r, from, name, out);
     if (!done) opening_free(out);
     return done;
 }
@@ -138,6 +126,16 @@ static bool shows(const char *effect, const volume *v) {
     return found;
 }
 
+static char *read_start(const char *home) {
+    char path[PATH_CAP];
+    void *text;
+    size_t size;
+    if (!path_join(path, home, "scripts/start/vdb.lua") ||
+        !file_read(path, MOST_TEXT, &text, &size))
+        return NULL;
+    return text;
+}
+
 static bool open_volume(const char *home, const char *path, opening *out) {
     volume v = {.frames = 0};
     if (!file_exists(path)) return err_set("%s: there is no such file", path);
@@ -149,7 +147,7 @@ static bool open_volume(const char *home, const char *path, opening *out) {
         if (!file_exists(out->file)) break;
         if (shows(out->file, &v)) return true;
     }
-    char *start = read_start(home, "vdb"), *text = start ? fill_in(start, &v) : NULL;
+    char *start = read_start(home), *text = start ? fill_in(start, &v) : NULL;
     bool done = text && file_write(out->file, text, strlen(text));
     mem_free(start);
     mem_free(text);

@@ -12,7 +12,7 @@ typedef struct opening {
 // An effect is itself. A PNG picture leads to what it was made of, and a VDB file to an effect that
 // shows its sequence: one of its folder, or one that is written there. False with a message.
 bool opening_find(const char *home, const char *path, opening *out);
-// Writes a new effect, NAME.lua in the current folder, from one of those in scripts/start/ of
-// `home`. An existing file is never replaced.
-bool opening_new(const char *home, const char *from, const char *name, opening *out);
+// Writes a new effect, NAME.lua in the current folder, from a template (starts.h), with what it
+// reads. An existing file is never replaced.
+bool opening_new(roil *r, const char *from, const char *name, opening *out);
 void opening_free(opening *o);

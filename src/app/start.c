@@ -2,6 +2,7 @@
 #include "app/label.h"
 #include "app/live.h"
 #include "app/recent.h"
+#include "app/starts.h"
 #include "app/window.h"
 #include "base/clock.h"
 #include "base/error.h"
@@ -165,18 +166,13 @@ static void draw_cards(page *p, ui_rect where) {
 }
 
 static void draw_new(page *p) {
-    static const struct {
-        const char *from, *label;
-    } starts[] = {{"burst", "A burst of noise, quick to draw"},
-                  {"smoke", "Simulated smoke"},
-                  {"fire", "Gas that burns"}};
     ui_text_color(UI_DIM, "New effect in this folder");
     ui_width(0);
     ui_input("##name", "Name", p->name, sizeof p->name);
-    for (size_t i = 0; i < sizeof starts / sizeof *starts; i++)
+    for (size_t i = 0; i < STARTS; i++)
         if (ui_button(starts[i].label))
-            take(p, opening_new(p->home, starts[i].from, p->name[0] ? p->name : starts[i].from,
-                                p->out));
+            take(p,
+                 opening_new(p->r, starts[i].name, p->name[0] ? p->name : starts[i].name, p->out));
 }
 
 static void draw_side(page *p, ui_rect where) {

@@ -32,6 +32,14 @@ class New(Case):
         made = [f"made-{name}/made-{name}.lua" for name in shipped()]
         self.assertEqual(self.succeeds("check", *made).count(": good\n"), len(made))
 
+    def test_templates_are_those_of_the_start_page(self):
+        """Small ones that stand alone, before shipped effects of the same end."""
+        for name in ("burst", "smoke", "fire"):
+            with self.subTest(name):
+                self.assertIn("with 0 files", self.succeeds("new", "my-" + name, "--from", name))
+                with open(os.path.join(SOURCE, f"scripts/start/{name}.lua"), "rb") as f:
+                    self.assertEqual(self.read(f"my-{name}/my-{name}.lua"), f.read())
+
     def test_a_choice_brings_its_files(self):
         self.write("a/pick.lua", """
 local fx = effect {}

@@ -2,6 +2,7 @@
 #include "roil_helper.h"
 
 #include "app/opening.h"
+#include "app/starts.h"
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -45,23 +46,22 @@ static void new_ones_replace_nothing(void **state) {
     (void)state;
     opening o;
     enter();
-    need(opening_new(home, "burst", "mine", &o));
+    need(opening_new(helper_roil, "burst", "mine", &o));
     assert_string_equal(o.file, "mine.lua");
-    refused(opening_new(home, "burst", "mine", &o), "there is a mine.lua already");
+    refused(opening_new(helper_roil, "burst", "mine", &o), "there is a mine.lua already");
     assert_string_equal(o.file, "");
-    refused(opening_new(home, "burst", "../mine", &o), "is no name");
-    refused(opening_new(home, "nothing", "other", &o), "nothing.lua");
+    refused(opening_new(helper_roil, "burst", "../mine", &o), "is no name");
+    refused(opening_new(helper_roil, "nothing", "other", &o),
+            "no effect 'nothing' comes with roil");
     assert_false(file_exists("other.lua"));
 }
 
 static void all_that_one_can_begin_with_are_effects(void **state) {
     (void)state;
-    static const char *const starts[] = {"burst", "smoke", "fire"};
-    char path[PATH_CAP], name[64];
+    char path[PATH_CAP];
     helper_source(home, ".");
-    for (size_t i = 0; i < COUNT_OF(starts); i++) {
-        snprintf(name, sizeof name, "scripts/start/%s.lua", starts[i]);
-        need(path_join(path, home, name));
+    for (size_t i = 0; i < STARTS; i++) {
+        need(starts_find(home, starts[i].name, path));
         roil_effect *e = roil_load(helper_roil, path, NULL, 0);
         need(e);
         need(roil_check(e));

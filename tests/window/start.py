@@ -99,7 +99,7 @@ class Start(Case):
         live.quit()
 
     def test_new_from_a_template(self):
-        live = self.start()
+        live = self.start("--size", "800x500")  # quick to draw
         live.widget("simulated smoke")
         live.click_on("name")
         live.type("my_burst")
@@ -115,6 +115,8 @@ class Start(Case):
         live.click_on("name")
         live.type("my_burst")
         live.click_on("a burst of noise, quick to draw")
+        live.expect("live: refused: there is a my_burst.lua already")
+        live.click_on("a campfire, with its logs")  # refused too: the name is still there
         live.expect("live: refused: there is a my_burst.lua already")
         live.keys("Escape")
         live.process.wait(60)

@@ -1,0 +1,119 @@
+#include "app/starts.h"
+#include "base/error.h"
+#include "base/memory.h"
+#include "base/str.h"
+#include <string.h>
+
+enum { FILE_MAX = 1 << 30 };
+
+const starts_template starts[STARTS] = {
+    {"burst", "A burst of noise, quick to draw", "scripts/start/burst.lua"},
+    {"smoke", "Simulated smoke", "scripts/start/smoke.lua"},
+    {"fire", "Gas that burns", "scripts/start/fire.lua"},
+    {"campfire", "A campfire, with its logs", "effects/pyro_campfire.lua"},
+};
+
+// ---- where it comes from ----------------------------------------------------------------------
+
+// Returns whether `name` ends with "_WANTED": campfire stands for pyro_campfire.
+static bool ends_with_word(const char *name, const char *wanted) {
+    size_t length = strlen(name), end = strlen(wanted);
+    return length > end && name[length - end - 1] == '_' &&
+           strcmp(name + length - end, wanted) == 0;
+}
+
+// Finds an effect that comes with the program by its name, or by the end of it.
+static bool find_shipped(const char *home, const char *wanted, char out[PATH_CAP]) {
+    char pattern[PATH_CAP];
+    file_list files = {0};
+    if (!path_join(pattern, home, "effects/*.lua") || !file_glob(pattern, &files)) return false;
+    char **names = mem_alloc(files.count * sizeof *names);
+    const char *found = NULL;
+    bool whole = false;
+    for (size_t i = 0; i < files.count; i++) {
+        const char *name = path_name(files.paths[i]);
+        names[i] = mem_copy(name, strlen(name) + 1);
+        names[i][strlen(name) - strlen(".lua")] = '\0';
+        bool same = strcmp(names[i], wanted) == 0;
+        if (same || (!whole && ends_with_word(names[i], wanted))) found = files.paths[i];
+        whole |= same;
+    }
+    bool done = found && str_copy(out, PATH_CAP, found);
+    const char *near = str_nearest(wanted, (const char *const *)names, files.count);
+    if (!found && near)
+        err_set("no effect '%s' comes with roil; did you mean '%s'?", wanted, near);
+    else if (!found)
+        err_set("no effect '%s' comes with roil; `roil info effects` lists them", wanted);
+    for (size_t i = 0; i < files.count; i++) mem_free(names[i]);
+    mem_free(names);
+    file_list_free(&files);
+    return done;
+}
+
+bool starts_find(const char *home, const char *wanted, char out[PATH_CAP]) {
+    for (size_t i = 0; i < STARTS; i++)
+        if (strcmp(starts[i].name, wanted) == 0) return path_join(out, home, starts[i].file);
+    return find_shipped(home, wanted, out);
+}
+
+// ---- what is written --------------------------------------------------------------------------
+
+bool starts_write_into(const char *folder, const char *name, const void *data, size_t size) {
+    char path[PATH_CAP];
+    return path_join(path, folder, name) && file_make_parent_folders(path) &&
+           file_write(path, data, size);
+}
+
+// Copies a file, unless it is there already.
+static bool copy_into(const char *folder, const char *from, const char *name) {
+    char path[PATH_CAP], there[PATH_CAP];
+    void *data, *other = NULL;
+    size_t size, held;
+    if (!path_join(path, from, name) || !path_join(there, folder, name)) return false;
+    if (!file_read(path, FILE_MAX, &data, &size)) return false;
+    bool done = !file_exists(there)
+                    ? starts_write_into(folder, name, data, size)
+                    : file_read(there, FILE_MAX, &other, &held) &&
+                          ((held == size && memcmp(data, other, size) == 0) ||
+                           err_set("there is another %s already, which it would read", name));
+    mem_free(data);
+    mem_free(other);
+    return done;
+}
+
+// Writes the effect with the commands in its comments as they are in its new place.
+static bool write_effect(const char *file, const char *folder, const char *name) {
+    void *source;
+    size_t size;
+    if (!file_read(file, FILE_MAX, &source, &size)) return false;
+    strbuf out = {0}, old = {0}, path = {0};
+    strbuf_add(&old, "effects/%s", path_name(file)); // as in effects/pyro_campfire.lua
+    strbuf_add(&path, "%s.lua", name);
+    const char *at = source;
+    for (const char *next; (next = strstr(at, old.text)); at = next + old.length) {
+        strbuf_append(&out, at, (size_t)(next - at));
+        strbuf_append(&out, path.text, path.length);
+    }
+    strbuf_append(&out, at, strlen(at));
+    bool done = starts_write_into(folder, path.text, out.text, out.length);
+    strbuf_free(&out);
+    strbuf_free(&old);
+    strbuf_free(&path);
+    mem_free(source);
+    return done;
+}
+
+bool starts_write(roil *r, const char *file, const char *folder, const char *name, size_t *copied) {
+    char from[PATH_CAP];
+    app_files files = {0};
+    path_folder(from, file);
+    bool done = app_collect_files(r, file, &files);
+    *copied = 0;
+    for (size_t i = 0; done && i < files.count; i++) {
+        if (strcmp(files.paths[i], path_name(file)) == 0) continue;
+        done = copy_into(folder, from, files.paths[i]);
+        *copied += done;
+    }
+    app_free_files(&files);
+    return done && write_effect(file, folder, name);
+}
