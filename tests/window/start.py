@@ -105,7 +105,8 @@ class Start(Case):
         live.type("my_burst")
         live.click_on("a burst of noise, quick to draw")
         live.expect("live: chose my_burst.lua")
-        self.begins(live)
+        live.expect("live: took over")
+        live.tool("windowfocus", "--sync", live.window())
         with open(os.path.join(SOURCE, "scripts/start/burst.lua"), encoding="utf-8") as f:
             self.assertEqual(self.read("my_burst.lua"), f.read())
         live.keys("ctrl+o")
