@@ -1,13 +1,13 @@
 #include "app/editor.h"
 #include "base/error.h"
 #include "base/memory.h"
-#include <errno.h>
+#include <spawn.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { MOST_WORDS = 32 };
+enum { MOST_WORDS = 32, MOST_EDITORS = 64 };
 
 const char *editor_command(void) {
     const char *own = getenv("ROIL_EDITOR"), *visual = getenv("VISUAL");
@@ -49,18 +49,28 @@ bool editor_words(const char *command, const char *file, int line, char **out, s
     return (fits && count > 0) || err_set("the editor '%s' is no command", command);
 }
 
-// A child that starts another and ends: the editor is nobody's to wait for.
+// Those that ended are waited for when the next one begins; the rest go on without the window.
+static void reap(pid_t *editors) {
+    for (size_t i = 0; i < MOST_EDITORS; i++)
+        if (editors[i] > 0 && waitpid(editors[i], NULL, WNOHANG) != 0) editors[i] = 0;
+}
+
+// The editor has the window's terminal for its messages, but Ctrl-C there does not concern it.
 static bool start(char **words) {
-    pid_t child = fork();
-    if (child < 0) return err_set("%s: %s", words[0], strerror(errno));
-    if (child == 0) {
-        setsid();
-        pid_t editor = fork();
-        if (editor == 0) execvp(words[0], words);
-        _exit(editor > 0 ? 0 : 127);
-    }
-    int status;
-    waitpid(child, &status, 0);
+    static pid_t editors[MOST_EDITORS];
+    posix_spawnattr_t how;
+    pid_t editor;
+    reap(editors);
+    posix_spawnattr_init(&how);
+    posix_spawnattr_setflags(&how, POSIX_SPAWN_SETSID);
+    int error = posix_spawnp(&editor, words[0], NULL, &how, words, environ);
+    posix_spawnattr_destroy(&how);
+    if (error) return err_set("the editor '%s': %s", words[0], strerror(error));
+    for (size_t i = 0; i < MOST_EDITORS; i++)
+        if (!editors[i]) {
+            editors[i] = editor;
+            break;
+        }
     return true;
 }
 

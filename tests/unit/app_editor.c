@@ -2,7 +2,12 @@
 #include "base_test.h"
 
 #include "app/editor.h"
+#include "base/error.h"
 #include "base/memory.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
 
 static void becomes(const char *command, const char *const *expected) {
     char *words[9];
@@ -34,10 +39,33 @@ static void what_is_no_command_is_refused(void **state) {
     for (size_t i = 0; words[i]; i++) mem_free(words[i]);
 }
 
+static void an_editor_runs_beside_or_is_named(void **state) {
+    (void)state;
+    int ends[2];
+    char said[64] = "";
+    assert_int_equal(pipe(ends), 0);
+    setenv("ROIL_EDITOR", "roil-no-such-editor %f", 1);
+    assert_false(editor_open("a.lua", 3));
+    assert_non_null(strstr(err_get(), "the editor 'roil-no-such-editor': No such file"));
+    setenv("ROIL_EDITOR", "/bin/echo at %l of %f", 1);
+    fflush(stdout);
+    int out = dup(STDOUT_FILENO);
+    dup2(ends[1], STDOUT_FILENO);
+    bool done = editor_open("a b.lua", 3);
+    dup2(out, STDOUT_FILENO);
+    ssize_t count = read(ends[0], said, sizeof said - 1);
+    assert_true(done && count > 0);
+    assert_string_equal(said, "at 3 of a b.lua\n");
+    close(out);
+    close(ends[0]);
+    close(ends[1]);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(places_are_filled_in),
         cmocka_unit_test(what_is_no_command_is_refused),
+        cmocka_unit_test(an_editor_runs_beside_or_is_named),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
