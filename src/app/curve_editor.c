@@ -291,6 +291,7 @@ static bool curve_paint(editor *e) {
     if (!e->curve.over_age) changed |= edit_shape(e);
     changed |= edit_key(e);
     ui_table_end();
+    if (e->curve.over_age) ui_text_color(UI_DIM, "Over a particle's life, from 0 to 1.");
     if (e->state->selected == ROIL_MAX_STOPS)
         ui_text_color(UI_DIM, "Double click adds a key, right click removes one.");
     if (e->curve.period > 0)
