@@ -210,7 +210,8 @@ static void note_key(walk *w, const char *text, const token *next) {
     const token *name = &w->last[4];
     if (is(text, name, ">")) name = &w->last[1]; // local fire <const> =
     if (name->kind == NAME) l->key = name->at;
-    if (l->table && is(text, name, "name") && next->kind == STRING)
+    bool said = next->kind == STRING && next->at.end >= next->at.begin + 2;
+    if (l->table && is(text, name, "name") && said)
         l->owner = (source_range){next->at.begin + 1, next->at.end - 1};
 }
 

@@ -43,6 +43,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
             within(calls[i].name, size);
             within(source_assigned_name(text, &calls[i]), size);
             try_table(text, calls[i].table, size);
+            char purpose[16];
+            if (source_purpose(text, calls[i].name.begin, purpose, sizeof purpose) &&
+                strnlen(purpose, sizeof purpose) == sizeof purpose)
+                abort();
         }
     }
     free(text);
