@@ -12,11 +12,11 @@ static const double LINEAR_SHARE = 1e-3;
 static const double DRAG_SHARE = 0.01; // of an unbounded value, a pixel
 
 // A range that is wider is a limit: on a bar of it nothing could be found.
-static const double WIDE = 1e5, DECADES = 1e7;
+static const double WIDE = 1e5, TIMES = 1e11;
 
 bool number_is_bounded(const number_range *r) {
     if (!isfinite(r->min) || !isfinite(r->max) || !(r->max > r->min)) return false;
-    return r->log_scale && r->min > 0 ? r->max <= DECADES * r->min : r->max - r->min <= WIDE;
+    return r->log_scale && r->min > 0 ? r->max <= TIMES * r->min : r->max - r->min <= WIDE;
 }
 
 static double clamped(const number_range *r, double value) {
