@@ -30,7 +30,7 @@ static void dragging_the_whole_width_crosses_the_range(void **state) {
     assert_true(number_drag(&linear, 50, 1e6, 200) == 200);
     assert_true(fabs(number_drag(&logarithmic, 0.1, 200, 200) - 10) < 1e-9);
     assert_true(number_drag(&free_range, 0, 10, 200) > 0); // zero can be left
-    const number_range wide = {1e-6, 1e6, true, false}; // a limit, and no bar
+    const number_range wide = {1e-6, 1e6, true, false};    // a limit, and no bar
     assert_true(!number_is_bounded(&wide) && number_is_bounded(&logarithmic));
     assert_true(fabs(number_drag(&wide, 2, 10, 200) - 2.2) < 1e-9);
     assert_true(number_drag(&wide, 1e6, 10, 200) == 1e6);
