@@ -30,6 +30,7 @@ extern "C" {
 
 typedef struct roil roil;               // a device and the folders of the library's files
 typedef struct roil_effect roil_effect; // one loaded effect file
+typedef struct roil_vulkan roil_vulkan; // a Vulkan device of the host (roil_vulkan.h)
 
 const char *roil_version(void); // such as "1.2.3"; static
 
@@ -59,6 +60,9 @@ typedef struct roil_window_desc {  // a window to show pictures in; any window l
 } roil_window_desc;
 
 typedef struct roil_desc {
+    // The host's own Vulkan device, which roil uses instead of one that it makes: `device`,
+    // `validate` and `window` are then ignored. NULL: it makes one.
+    const roil_vulkan *vulkan;
     // Part of a device's name, its UUID, or its number in the list of roil_info_devices. NULL: the
     // first real GPU, or a software device where there is none.
     const char *device;

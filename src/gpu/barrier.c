@@ -119,5 +119,5 @@ void vk_uses_flush(gpu *g, VkCommandBuffer commands) {
     if (info.imageMemoryBarrierCount == 0 && info.bufferMemoryBarrierCount == 0) return;
     info.pImageMemoryBarriers = uses->images;
     info.pBufferMemoryBarriers = uses->buffers;
-    vkCmdPipelineBarrier2(commands, &info);
+    g->vk.CmdPipelineBarrier2(commands, &info);
 }

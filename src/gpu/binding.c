@@ -174,7 +174,7 @@ static bool add_pool(gpu *g, vk_sets *sets) {
                                        .poolSizeCount = COUNT_OF(sizes),
                                        .pPoolSizes = sizes};
     VkDescriptorPool pool;
-    if (!vk_check(g, vkCreateDescriptorPool(g->device, &info, NULL, &pool),
+    if (!vk_check(g, g->vk.CreateDescriptorPool(g->device, &info, NULL, &pool),
                   "creating a pool of descriptors")) {
         return false;
     }
@@ -193,14 +193,14 @@ static bool take_set(gpu *g, const gpu_pipeline *pipeline, VkDescriptorSet *out)
                                         .descriptorSetCount = 1,
                                         .pSetLayouts = &pipeline->built->set_layout};
     sets->taken++;
-    return vk_check(g, vkAllocateDescriptorSets(g->device, &info, out),
+    return vk_check(g, g->vk.AllocateDescriptorSets(g->device, &info, out),
                     "taking descriptors for pipeline '%s'", pipeline->label);
 }
 
 // Pools are kept: a batch that needed them once will do so again.
 bool vk_sets_reset(gpu *g, vk_sets *sets) {
     for (size_t i = 0; i * SETS_OF_POOL < sets->taken; i++) {
-        if (!vk_check(g, vkResetDescriptorPool(g->device, sets->pools[i], 0),
+        if (!vk_check(g, g->vk.ResetDescriptorPool(g->device, sets->pools[i], 0),
                       "emptying a pool of descriptors")) {
             return false;
         }
@@ -211,7 +211,7 @@ bool vk_sets_reset(gpu *g, vk_sets *sets) {
 
 void vk_sets_free(gpu *g, vk_sets *sets) {
     for (size_t i = 0; i < sets->count; i++) {
-        vkDestroyDescriptorPool(g->device, sets->pools[i], NULL);
+        g->vk.DestroyDescriptorPool(g->device, sets->pools[i], NULL);
     }
     mem_free(sets->pools);
 }
@@ -227,8 +227,8 @@ static bool hand_over(gpu *g, VkCommandBuffer commands, const gpu_pipeline *pipe
     VkDescriptorSet set;
     if (!take_set(g, pipeline, &set)) return false;
     for (uint32_t i = 0; i < count; i++) writes[i].dstSet = set;
-    vkUpdateDescriptorSets(g->device, count, writes, 0, NULL);
-    vkCmdBindDescriptorSets(commands, pipeline->bind_point, layout, 0, 1, &set, 0, NULL);
+    g->vk.UpdateDescriptorSets(g->device, count, writes, 0, NULL);
+    g->vk.CmdBindDescriptorSets(commands, pipeline->bind_point, layout, 0, 1, &set, 0, NULL);
     return true;
 }
 

@@ -6,7 +6,7 @@
 
 static void buffer_free(gpu *g, void *object) {
     gpu_buffer *buffer = object;
-    vkDestroyBuffer(g->device, buffer->handle, NULL);
+    g->vk.DestroyBuffer(g->device, buffer->handle, NULL);
     vk_memory_free(g, &buffer->memory);
     mem_free(buffer->label);
     mem_free(buffer);
@@ -28,17 +28,17 @@ gpu_buffer *vk_buffer_create(gpu *g, uint64_t size, VkBufferUsageFlags usage, vk
     VkBufferCreateInfo info = {.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
                                .size = (size + 3) & ~UINT64_C(3), // fills count in words
                                .usage = usage};
-    VkResult result = vkCreateBuffer(g->device, &info, NULL, &buffer->handle);
+    VkResult result = g->vk.CreateBuffer(g->device, &info, NULL, &buffer->handle);
     if (!vk_check(g, result, "creating buffer '%s'", label)) {
         buffer_free(g, buffer);
         return NULL;
     }
     VkMemoryRequirements needs;
-    vkGetBufferMemoryRequirements(g->device, buffer->handle, &needs);
+    g->vk.GetBufferMemoryRequirements(g->device, buffer->handle, &needs);
     if (!vk_memory_alloc(g, &needs, kind, false, label, &buffer->memory) ||
         !vk_check(g,
-                  vkBindBufferMemory(g->device, buffer->handle, buffer->memory.block->memory,
-                                     buffer->memory.place.offset),
+                  g->vk.BindBufferMemory(g->device, buffer->handle, buffer->memory.block->memory,
+                                         buffer->memory.place.offset),
                   "binding memory to buffer '%s'", label)) {
         buffer_free(g, buffer);
         return NULL;

@@ -61,22 +61,23 @@ static void choose_path(gpu *g, const char *dir, const VkPhysicalDevicePropertie
 }
 
 bool vk_cache_create(gpu *g, const char *dir) {
-    VkPhysicalDeviceProperties device;
-    vkGetPhysicalDeviceProperties(g->physical, &device);
+    VkPhysicalDeviceProperties2 two = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2};
+    g->vk.GetPhysicalDeviceProperties2(g->physical, &two);
+    const VkPhysicalDeviceProperties *device = &two.properties;
     void *file = NULL;
     size_t file_size = 0;
     VkPipelineCacheCreateInfo info = {.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO};
-    if (dir) choose_path(g, dir, &device);
+    if (dir) choose_path(g, dir, device);
     if (g->cache_path && file_exists(g->cache_path) &&
         file_read(g->cache_path, CACHE_MAX, &file, &file_size)) {
-        info.pInitialData = vk_cache_unpack(file, file_size, &device, &info.initialDataSize);
+        info.pInitialData = vk_cache_unpack(file, file_size, device, &info.initialDataSize);
         if (info.pInitialData) g->cache_hash = hash64(info.pInitialData, info.initialDataSize);
     }
-    VkResult result = vkCreatePipelineCache(g->device, &info, NULL, &g->cache);
+    VkResult result = g->vk.CreatePipelineCache(g->device, &info, NULL, &g->cache);
     if (result != VK_SUCCESS && info.pInitialData) {
         info.pInitialData = NULL;
         info.initialDataSize = 0;
-        result = vkCreatePipelineCache(g->device, &info, NULL, &g->cache);
+        result = g->vk.CreatePipelineCache(g->device, &info, NULL, &g->cache);
     }
     mem_free(file);
     return vk_check(g, result, "creating the pipeline cache");
@@ -85,9 +86,10 @@ bool vk_cache_create(gpu *g, const char *dir) {
 static void save(gpu *g) {
     size_t size = 0, file_size;
     void *file = NULL;
-    if (vkGetPipelineCacheData(g->device, g->cache, &size, NULL) != VK_SUCCESS || size == 0) return;
+    if (g->vk.GetPipelineCacheData(g->device, g->cache, &size, NULL) != VK_SUCCESS || size == 0)
+        return;
     void *data = mem_alloc(size);
-    if (vkGetPipelineCacheData(g->device, g->cache, &size, data) == VK_SUCCESS &&
+    if (g->vk.GetPipelineCacheData(g->device, g->cache, &size, data) == VK_SUCCESS &&
         hash64(data, size) != g->cache_hash && vk_cache_pack(data, size, &file, &file_size)) {
         if (!file_make_parent_folders(g->cache_path) ||
             !file_write(g->cache_path, file, file_size)) {
@@ -101,6 +103,6 @@ static void save(gpu *g) {
 void vk_cache_destroy(gpu *g) {
     if (!g->cache) return;
     if (g->cache_path && !atomic_load(&g->lost)) save(g);
-    vkDestroyPipelineCache(g->device, g->cache, NULL);
+    g->vk.DestroyPipelineCache(g->device, g->cache, NULL);
     g->cache = VK_NULL_HANDLE;
 }

@@ -23,32 +23,33 @@ static gpu_kind kind_of(VkPhysicalDeviceType type) {
     }
 }
 
-static bool can_present(VkPhysicalDevice physical, uint32_t family, VkSurfaceKHR surface) {
+static bool can_present(const vk_calls *vk, VkPhysicalDevice physical, uint32_t family,
+                        VkSurfaceKHR surface) {
     VkBool32 can = VK_FALSE;
-    return vkGetPhysicalDeviceSurfaceSupportKHR(physical, family, surface, &can) == VK_SUCCESS &&
+    return vk->GetPhysicalDeviceSurfaceSupportKHR(physical, family, surface, &can) == VK_SUCCESS &&
            can;
 }
 
-int vk_queue_family_find(VkPhysicalDevice physical, VkSurfaceKHR surface) {
+int vk_queue_family_find(const vk_calls *vk, VkPhysicalDevice physical, VkSurfaceKHR surface) {
     VkQueueFamilyProperties list[16];
     uint32_t count = COUNT_OF(list);
-    vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, list);
+    vk->GetPhysicalDeviceQueueFamilyProperties(physical, &count, list);
     for (uint32_t i = 0; i < count; i++) {
         VkQueueFlags wanted = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
         if ((list[i].queueFlags & wanted) != wanted) continue;
-        if (!surface || can_present(physical, i, surface)) return (int)i;
+        if (!surface || can_present(vk, physical, i, surface)) return (int)i;
     }
     return -1;
 }
 
-static bool has_extension(VkPhysicalDevice physical, const char *name) {
+static bool has_extension(const vk_calls *vk, VkPhysicalDevice physical, const char *name) {
     uint32_t count = 0;
-    if (vkEnumerateDeviceExtensionProperties(physical, NULL, &count, NULL) != VK_SUCCESS) {
+    if (vk->EnumerateDeviceExtensionProperties(physical, NULL, &count, NULL) != VK_SUCCESS) {
         return false;
     }
     VkExtensionProperties *list = mem_alloc(count * sizeof *list);
     bool found = false;
-    VkResult result = vkEnumerateDeviceExtensionProperties(physical, NULL, &count, list);
+    VkResult result = vk->EnumerateDeviceExtensionProperties(physical, NULL, &count, list);
     for (uint32_t i = 0; result == VK_SUCCESS && i < count && !found; i++) {
         found = strcmp(list[i].extensionName, name) == 0;
     }
@@ -64,49 +65,41 @@ static void lacks(gpu_info *info, const char *what) {
 }
 
 // The environment may turn them down, so that what stands in for them can be tried on any device.
-static bool can_push(VkPhysicalDevice physical) {
+bool vk_can_push(const vk_calls *vk, VkPhysicalDevice physical) {
     const char *set = getenv("ROIL_PUSH_DESCRIPTORS");
-    return has_extension(physical, VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME) &&
+    return has_extension(vk, physical, VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME) &&
            !(set && strcmp(set, "0") == 0);
 }
 
 // A device older than 1.3 does not know the feature structs, so nothing more is asked of it.
-static void list_missing(VkPhysicalDevice physical, VkSurfaceKHR surface, uint32_t version,
-                         gpu_info *info) {
+static void list_missing(const vk_calls *vk, VkPhysicalDevice physical, VkSurfaceKHR surface,
+                         uint32_t version, const vk_features *features, gpu_info *info) {
     info->usable = true;
     if (version < VK_API_VERSION_1_3) {
         lacks(info, "Vulkan 1.3");
         return;
     }
-    vk_features f;
-    vk_features_read(physical, &f);
-    if (vk_queue_family_find(physical, VK_NULL_HANDLE) < 0) {
+    if (vk_queue_family_find(vk, physical, VK_NULL_HANDLE) < 0) {
         lacks(info, "a graphics and compute queue");
-    } else if (surface && vk_queue_family_find(physical, surface) < 0) {
+    } else if (surface && vk_queue_family_find(vk, physical, surface) < 0) {
         lacks(info, "a queue that can show pictures in the window");
     }
-    if (surface && !has_extension(physical, VK_KHR_SWAPCHAIN_EXTENSION_NAME)) {
+    if (surface && !has_extension(vk, physical, VK_KHR_SWAPCHAIN_EXTENSION_NAME)) {
         lacks(info, VK_KHR_SWAPCHAIN_EXTENSION_NAME);
     }
-    info->int64 = f.core.features.shaderInt64;
-    if (!f.v13.dynamicRendering) lacks(info, "dynamicRendering");
-    if (!f.v13.synchronization2) lacks(info, "synchronization2");
-    if (!f.v13.maintenance4) lacks(info, "maintenance4");
-    if (!f.v12.timelineSemaphore) lacks(info, "timelineSemaphore");
-    if (!f.v12.scalarBlockLayout) lacks(info, "scalarBlockLayout");
-    if (!f.core.features.shaderStorageImageExtendedFormats) {
-        lacks(info, "shaderStorageImageExtendedFormats");
-    }
+    vk_features there;
+    vk_features_read(vk, physical, &there);
+    info->int64 = features->core.features.shaderInt64;
+    size_t at = 0;
+    for (const char *name; (name = vk_features_missing(&there, features, &at));) lacks(info, name);
 }
 
-static gpu_limits limits_of(VkPhysicalDevice physical, const VkPhysicalDeviceLimits *l) {
-    VkPhysicalDeviceFeatures features;
-    vkGetPhysicalDeviceFeatures(physical, &features);
+static gpu_limits limits_of(const vk_features *features, const VkPhysicalDeviceLimits *l) {
     return (gpu_limits){.group_threads = l->maxComputeWorkGroupInvocations,
                         .shared_bytes = l->maxComputeSharedMemorySize,
                         .storage_buffers = l->maxPerStageDescriptorStorageBuffers,
                         .storage_images = l->maxPerStageDescriptorStorageImages,
-                        .first_instance = features.drawIndirectFirstInstance};
+                        .first_instance = features->core.features.drawIndirectFirstInstance};
 }
 
 // As tools of vendors print it: groups of 4, 2, 2, 2 and 6 bytes.
@@ -117,23 +110,23 @@ static void print_uuid(const uint8_t id[VK_UUID_SIZE], char out[37]) {
     }
 }
 
-static void describe(vk_choice *choice, VkSurfaceKHR surface) {
-    VkPhysicalDevice physical = choice->physical;
+void vk_choice_describe(const vk_calls *vk, VkPhysicalDevice physical, VkSurfaceKHR surface,
+                        const vk_features *features, bool pushes, vk_choice *choice) {
+    *choice = (vk_choice){.physical = physical, .pushes = pushes};
     gpu_info *info = &choice->info;
     VkPhysicalDeviceVulkan11Properties v11 = {
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES};
     VkPhysicalDeviceDriverProperties driver = {
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES, .pNext = &v11};
     VkPhysicalDeviceProperties2 two = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2};
-    vkGetPhysicalDeviceProperties2(physical, &two);
+    vk->GetPhysicalDeviceProperties2(physical, &two);
     const VkPhysicalDeviceProperties *p = &two.properties;
     if (p->apiVersion >= VK_API_VERSION_1_2) {
         two.pNext = &driver;
-        vkGetPhysicalDeviceProperties2(physical, &two);
+        vk->GetPhysicalDeviceProperties2(physical, &two);
         print_uuid(v11.deviceUUID, info->uuid);
     }
 
-    choice->pushes = can_push(physical);
     str_copy(info->name, sizeof info->name, p->deviceName);
     snprintf(info->driver, sizeof info->driver, "%.120s %.120s", driver.driverName,
              driver.driverInfo);
@@ -144,24 +137,24 @@ static void describe(vk_choice *choice, VkSurfaceKHR surface) {
     info->subgroup_size = v11.subgroupSize;
     info->subpixel_bits = p->limits.subPixelPrecisionBits;
     VkPhysicalDeviceMemoryProperties memory;
-    vkGetPhysicalDeviceMemoryProperties(physical, &memory);
+    vk->GetPhysicalDeviceMemoryProperties(physical, &memory);
     for (uint32_t i = 0; i < memory.memoryHeapCount; i++) {
         const VkMemoryHeap *heap = &memory.memoryHeaps[i];
         if ((heap->flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT) && heap->size > info->memory) {
             info->memory = heap->size;
         }
     }
-    int family = vk_queue_family_find(physical, surface);
+    int family = vk_queue_family_find(vk, physical, surface);
     if (family >= 0) {
         VkQueueFamilyProperties list[16];
         uint32_t count = COUNT_OF(list);
-        vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, list);
+        vk->GetPhysicalDeviceQueueFamilyProperties(physical, &count, list);
         if (list[family].timestampValidBits > 0) {
             info->timestamp_period = p->limits.timestampPeriod;
         }
     }
-    list_missing(physical, surface, p->apiVersion, info);
-    const gpu_limits limits = limits_of(physical, &p->limits);
+    list_missing(vk, physical, surface, p->apiVersion, features, info);
+    const gpu_limits limits = limits_of(features, &p->limits);
     choice->profile = vk_profile_find(info, driver.driverID, driver.driverInfo, &limits);
 }
 
@@ -174,18 +167,28 @@ static int rank(gpu_kind kind) {
     return ranks[kind];
 }
 
-int vk_choices_find(VkInstance instance, VkSurfaceKHR surface, vk_choice *out) {
+// Of a device older than 1.3 none.
+static void read_features(const vk_calls *vk, VkPhysicalDevice physical, vk_features *out) {
+    VkPhysicalDeviceProperties2 two = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2};
+    vk->GetPhysicalDeviceProperties2(physical, &two);
+    memset(out, 0, sizeof *out);
+    if (two.properties.apiVersion >= VK_API_VERSION_1_3) vk_features_read(vk, physical, out);
+}
+
+int vk_choices_find(const vk_calls *vk, VkInstance instance, VkSurfaceKHR surface, vk_choice *out) {
     VkPhysicalDevice list[VK_MAX_DEVICES];
     uint32_t count = VK_MAX_DEVICES;
-    VkResult result = vkEnumeratePhysicalDevices(instance, &count, list);
+    VkResult result = vk->EnumeratePhysicalDevices(instance, &count, list);
     if ((result != VK_SUCCESS && result != VK_INCOMPLETE) || count == 0) {
         err_set("no Vulkan device was found; install the driver of your GPU, or Mesa's software "
                 "driver (Debian: mesa-vulkan-drivers)");
         return -1;
     }
     for (uint32_t i = 0; i < count; i++) {
-        vk_choice choice = {.physical = list[i]};
-        describe(&choice, surface);
+        vk_features features;
+        vk_choice choice;
+        read_features(vk, list[i], &features);
+        vk_choice_describe(vk, list[i], surface, &features, vk_can_push(vk, list[i]), &choice);
         uint32_t at = i;
         for (; at > 0 && rank(out[at - 1].info.kind) > rank(choice.info.kind); at--) {
             out[at] = out[at - 1];
@@ -197,11 +200,12 @@ int vk_choices_find(VkInstance instance, VkSurfaceKHR surface, vk_choice *out) {
 
 int gpu_list(gpu_info *out, int capacity) {
     vk_instance instance;
-    if (!vk_instance_create(&instance, false, NULL, NULL)) return -1;
+    vk_calls vk = {0};
+    if (!vk_instance_create(&instance, &vk, false, NULL, NULL)) return -1;
     vk_choice choices[VK_MAX_DEVICES];
-    int count = vk_choices_find(instance.handle, VK_NULL_HANDLE, choices);
+    int count = vk_choices_find(&vk, instance.handle, VK_NULL_HANDLE, choices);
     for (int i = 0; i < count && i < capacity; i++) out[i] = choices[i].info;
-    vk_instance_destroy(&instance);
+    vk_instance_destroy(&instance, &vk);
     return count;
 }
 

@@ -9,7 +9,7 @@ bool vk_batch_create(gpu *g, vk_batch *out) {
     VkCommandPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
                                     .flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT,
                                     .queueFamilyIndex = g->family};
-    if (!vk_check(g, vkCreateCommandPool(g->device, &pool, NULL, &out->pool),
+    if (!vk_check(g, g->vk.CreateCommandPool(g->device, &pool, NULL, &out->pool),
                   "creating a command pool")) {
         return false;
     }
@@ -17,24 +17,26 @@ bool vk_batch_create(gpu *g, vk_batch *out) {
                                         .commandPool = out->pool,
                                         .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
                                         .commandBufferCount = 1};
-    return vk_check(g, vkAllocateCommandBuffers(g->device, &info, &out->commands),
+    return vk_check(g, g->vk.AllocateCommandBuffers(g->device, &info, &out->commands),
                     "creating a command buffer");
 }
 
 void vk_batch_destroy(gpu *g, vk_batch *batch) {
-    vkDestroyCommandPool(g->device, batch->pool, NULL);
+    g->vk.DestroyCommandPool(g->device, batch->pool, NULL);
     vk_sets_free(g, &batch->sets);
     memset(batch, 0, sizeof *batch);
 }
 
 bool vk_batch_begin(gpu *g, vk_batch *batch) {
     if (!vk_wait(g, batch->serial) || !vk_sets_reset(g, &batch->sets)) return false;
-    if (!vk_check(g, vkResetCommandPool(g->device, batch->pool, 0), "resetting a command pool")) {
+    if (!vk_check(g, g->vk.ResetCommandPool(g->device, batch->pool, 0),
+                  "resetting a command pool")) {
         return false;
     }
     VkCommandBufferBeginInfo info = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
                                      .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
-    if (!vk_check(g, vkBeginCommandBuffer(batch->commands, &info), "opening a command buffer")) {
+    if (!vk_check(g, g->vk.BeginCommandBuffer(batch->commands, &info),
+                  "opening a command buffer")) {
         return false;
     }
     atomic_store(&g->open_serial, g->submitted + 1);
@@ -43,7 +45,7 @@ bool vk_batch_begin(gpu *g, vk_batch *batch) {
 }
 
 // Waiting on the semaphore orders execution; only this makes the bytes visible to the host.
-static void publish_to_host(VkCommandBuffer commands) {
+static void publish_to_host(const gpu *g, VkCommandBuffer commands) {
     VkMemoryBarrier2 barrier = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
                                 .srcStageMask = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
                                 .srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT,
@@ -52,16 +54,16 @@ static void publish_to_host(VkCommandBuffer commands) {
     VkDependencyInfo info = {.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
                              .memoryBarrierCount = 1,
                              .pMemoryBarriers = &barrier};
-    vkCmdPipelineBarrier2(commands, &info);
+    g->vk.CmdPipelineBarrier2(commands, &info);
 }
 
 static VkResult end_and_submit(gpu *g, vk_batch *batch) {
-    VkResult result = vkEndCommandBuffer(batch->commands);
+    VkResult result = g->vk.EndCommandBuffer(batch->commands);
     if (result != VK_SUCCESS) return result;
     VkCommandBufferSubmitInfo commands = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO,
                                           .commandBuffer = batch->commands};
-    VkSemaphoreSubmitInfo waits[2];
-    uint32_t wait_count = 0;
+    VkSemaphoreSubmitInfo waits[2 + GPU_MAX_SYNC], signals[2 + GPU_MAX_SYNC];
+    uint32_t wait_count = 0, signal_count = 0;
     if (batch->wait)
         waits[wait_count++] =
             (VkSemaphoreSubmitInfo){.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO,
@@ -73,27 +75,32 @@ static VkResult end_and_submit(gpu *g, vk_batch *batch) {
                                     .semaphore = g->copier.timeline,
                                     .value = g->copier.wait,
                                     .stageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT};
-    VkSemaphoreSubmitInfo signals[2] = {{.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO,
-                                         .semaphore = g->timeline,
-                                         .value = g->submitted + 1,
-                                         .stageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT},
-                                        {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO,
-                                         .semaphore = batch->signal,
-                                         .stageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT}};
+    signals[signal_count++] =
+        (VkSemaphoreSubmitInfo){.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO,
+                                .semaphore = g->timeline,
+                                .value = g->submitted + 1,
+                                .stageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT};
+    if (batch->signal)
+        signals[signal_count++] =
+            (VkSemaphoreSubmitInfo){.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO,
+                                    .semaphore = batch->signal,
+                                    .stageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT};
+    if (batch->syncs) vk_host_add_syncs(g, waits, &wait_count, signals, &signal_count);
     VkSubmitInfo2 info = {.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2,
                           .commandBufferInfoCount = 1,
                           .pCommandBufferInfos = &commands,
                           .waitSemaphoreInfoCount = wait_count,
                           .pWaitSemaphoreInfos = waits,
-                          .signalSemaphoreInfoCount = batch->signal ? 2 : 1,
+                          .signalSemaphoreInfoCount = signal_count,
                           .pSignalSemaphoreInfos = signals};
     batch->wait = batch->signal = VK_NULL_HANDLE;
+    batch->syncs = false;
     g->copier.wait = 0;
-    return vkQueueSubmit2(g->queue, 1, &info, VK_NULL_HANDLE);
+    return vk_host_submit(g, &info);
 }
 
 bool vk_batch_submit(gpu *g, vk_batch *batch) {
-    if (g->host_reads) publish_to_host(batch->commands);
+    if (g->host_reads) publish_to_host(g, batch->commands);
     VkResult result = end_and_submit(g, batch);
     if (result == VK_ERROR_DEVICE_LOST) return vk_lose(g, result);
     if (!vk_check(g, result, "submitting work to '%s'", g->info.name)) {

@@ -14,13 +14,13 @@ void gpu_image_clear(gpu *g, gpu_image *image, const float color[4]) {
     if (image->desc.format == GPU_D32F) {
         float depth = color[0] < 0.0f ? 0.0f : color[0] > 1.0f ? 1.0f : color[0];
         VkClearDepthStencilValue value = {.depth = depth};
-        vkCmdClearDepthStencilImage(commands, image->handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                                    &value, 1, &range);
+        g->vk.CmdClearDepthStencilImage(commands, image->handle,
+                                        VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &value, 1, &range);
         return;
     }
     VkClearColorValue value = vk_clear_color(image, color);
-    vkCmdClearColorImage(commands, image->handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &value, 1,
-                         &range);
+    g->vk.CmdClearColorImage(commands, image->handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &value,
+                             1, &range);
 }
 
 void gpu_buffer_fill(gpu *g, gpu_buffer *buffer, uint32_t word) {
@@ -29,7 +29,7 @@ void gpu_buffer_fill(gpu *g, gpu_buffer *buffer, uint32_t word) {
     vk_uses_begin(g);
     vk_use_buffer(g, buffer, vk_buffer_to);
     vk_uses_flush(g, commands);
-    vkCmdFillBuffer(commands, buffer->handle, 0, VK_WHOLE_SIZE, word);
+    g->vk.CmdFillBuffer(commands, buffer->handle, 0, VK_WHOLE_SIZE, word);
 }
 
 bool gpu_image_copy_to_buffer(gpu *g, gpu_image *image, gpu_buffer *buffer, uint64_t offset) {
@@ -56,8 +56,8 @@ bool gpu_image_copy_to_buffer(gpu *g, gpu_image *image, gpu_buffer *buffer, uint
     VkBufferImageCopy region = {.bufferOffset = offset,
                                 .imageSubresource = {.aspectMask = image->aspect, .layerCount = 1},
                                 .imageExtent = extent};
-    vkCmdCopyImageToBuffer(commands, image->handle, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
-                           buffer->handle, 1, &region);
+    g->vk.CmdCopyImageToBuffer(commands, image->handle, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                               buffer->handle, 1, &region);
     return true;
 }
 
@@ -69,7 +69,7 @@ static bool copy_bytes(gpu *g, gpu_buffer *from, uint64_t offset, gpu_buffer *to
     vk_use_buffer(g, to, vk_buffer_to);
     vk_uses_flush(g, commands);
     VkBufferCopy region = {.srcOffset = offset, .size = size};
-    vkCmdCopyBuffer(commands, from->handle, to->handle, 1, &region);
+    g->vk.CmdCopyBuffer(commands, from->handle, to->handle, 1, &region);
     return true;
 }
 
@@ -101,8 +101,8 @@ bool gpu_image_copy(gpu *g, gpu_image *from, gpu_image *to) {
     vk_uses_flush(g, commands);
     VkImageSubresourceLayers layers = {.aspectMask = from->aspect, .layerCount = 1};
     VkImageCopy region = {.srcSubresource = layers, .dstSubresource = layers, .extent = extent};
-    vkCmdCopyImage(commands, from->handle, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to->handle,
-                   VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
+    g->vk.CmdCopyImage(commands, from->handle, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to->handle,
+                       VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
     return true;
 }
 

@@ -5,60 +5,21 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void chain(vk_features *f) {
-    f->core.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
-    f->v11.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_FEATURES;
-    f->v12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
-    f->v13.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES;
-    f->core.pNext = &f->v11;
-    f->v11.pNext = &f->v12;
-    f->v12.pNext = &f->v13;
-}
-
-void vk_features_read(VkPhysicalDevice physical, vk_features *out) {
-    memset(out, 0, sizeof *out);
-    chain(out);
-    vkGetPhysicalDeviceFeatures2(physical, &out->core);
-}
-
 // `copies`: a second family to have a queue of; -1: none.
-static VkDevice vk_device_create(const vk_choice *choice, const gpu_limits *limits, uint32_t family,
-                                 int copies, bool presents) {
-    vk_features has, want = {0};
-    vk_features_read(choice->physical, &has);
-    chain(&want);
-    want.v13.dynamicRendering = VK_TRUE;
-    want.v13.synchronization2 = VK_TRUE;
-    want.v13.maintenance4 = VK_TRUE;
-    want.v12.timelineSemaphore = VK_TRUE;
-    want.v12.scalarBlockLayout = VK_TRUE;
-    want.core.features.shaderStorageImageExtendedFormats = VK_TRUE;
-    // Shaders are written by strangers: an index out of bounds must stay inside its own binding.
-    want.core.features.robustBufferAccess = has.core.features.robustBufferAccess;
-    want.v13.robustImageAccess = has.v13.robustImageAccess;
-    // Conveniences that shaders may lean on where they exist.
-    want.core.features.shaderStorageImageReadWithoutFormat =
-        has.core.features.shaderStorageImageReadWithoutFormat;
-    want.core.features.shaderStorageImageWriteWithoutFormat =
-        has.core.features.shaderStorageImageWriteWithoutFormat;
-    want.core.features.vertexPipelineStoresAndAtomics =
-        has.core.features.vertexPipelineStoresAndAtomics;
-    want.core.features.fragmentStoresAndAtomics = has.core.features.fragmentStoresAndAtomics;
-    want.core.features.shaderUniformBufferArrayDynamicIndexing =
-        has.core.features.shaderUniformBufferArrayDynamicIndexing; // hide.c
-    want.core.features.drawIndirectFirstInstance = limits->first_instance;
-    want.core.features.shaderInt64 = has.core.features.shaderInt64;
-    want.core.features.multiDrawIndirect = has.core.features.multiDrawIndirect;
-    want.v11.storageBuffer16BitAccess = has.v11.storageBuffer16BitAccess;
-    want.v11.uniformAndStorageBuffer16BitAccess = has.v11.uniformAndStorageBuffer16BitAccess;
+static VkDevice vk_device_create(gpu *g, const vk_choice *choice, int copies) {
+    vk_features there, want;
+    vk_features_read(&g->vk, choice->physical, &there);
+    vk_features_choose(&there, &want);
+    want.core.features.drawIndirectFirstInstance = g->profile.limits.first_instance;
+    g->draws_many = want.core.features.multiDrawIndirect;
 
     const char *extensions[2];
     uint32_t extension_count = 0;
     if (choice->pushes) extensions[extension_count++] = VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME;
-    if (presents) extensions[extension_count++] = VK_KHR_SWAPCHAIN_EXTENSION_NAME;
+    if (g->window.surface) extensions[extension_count++] = VK_KHR_SWAPCHAIN_EXTENSION_NAME;
     float priority = 1.0f;
     VkDeviceQueueCreateInfo queues[2] = {{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
-                                          .queueFamilyIndex = family,
+                                          .queueFamilyIndex = g->family,
                                           .queueCount = 1,
                                           .pQueuePriorities = &priority}};
     queues[1] = queues[0];
@@ -70,7 +31,7 @@ static VkDevice vk_device_create(const vk_choice *choice, const gpu_limits *limi
                                .enabledExtensionCount = extension_count,
                                .ppEnabledExtensionNames = extensions};
     VkDevice device = VK_NULL_HANDLE;
-    VkResult result = vkCreateDevice(choice->physical, &info, NULL, &device);
+    VkResult result = g->vk.CreateDevice(choice->physical, &info, NULL, &device);
     if (result != VK_SUCCESS) {
         err_set("the device does not start: vkCreateDevice gives error %d", (int)result);
     }
@@ -94,19 +55,21 @@ static void load_limits(gpu *g) {
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES, .pNext = &v13};
     VkPhysicalDeviceProperties2 properties = {
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &v11};
-    vkGetPhysicalDeviceProperties2(g->physical, &properties);
+    g->vk.GetPhysicalDeviceProperties2(g->physical, &properties);
     g->limits = properties.properties.limits;
+    if (!g->draws_many) g->limits.maxDrawIndirectCount = 1;
     g->max_allocation = v11.maxMemoryAllocationSize;
     g->max_buffer = v13.maxBufferSize;
-    vkGetPhysicalDeviceMemoryProperties(g->physical, &g->heaps);
+    g->vk.GetPhysicalDeviceMemoryProperties(g->physical, &g->heaps);
     for (int i = 1; i < GPU_FORMAT_COUNT; i++) {
         VkFormatProperties p;
-        vkGetPhysicalDeviceFormatProperties(g->physical, vk_format_get((gpu_format)i)->format, &p);
+        g->vk.GetPhysicalDeviceFormatProperties(g->physical, vk_format_get((gpu_format)i)->format,
+                                                &p);
         g->format_features[i] = p.optimalTilingFeatures;
     }
     VkQueueFamilyProperties families[16];
     uint32_t count = COUNT_OF(families);
-    vkGetPhysicalDeviceQueueFamilyProperties(g->physical, &count, families);
+    g->vk.GetPhysicalDeviceQueueFamilyProperties(g->physical, &count, families);
     g->timestamp_bits = families[g->family].timestampValidBits;
 }
 
@@ -114,42 +77,77 @@ static void load_calls(gpu *g, bool pushes) {
     VkDevice d = g->device;
     if (pushes)
         g->push_descriptors =
-            (PFN_vkCmdPushDescriptorSetKHR)vkGetDeviceProcAddr(d, "vkCmdPushDescriptorSetKHR");
+            (PFN_vkCmdPushDescriptorSetKHR)g->vk.GetDeviceProcAddr(d, "vkCmdPushDescriptorSetKHR");
     if (!g->instance.labels) return;
-    g->begin_label =
-        (PFN_vkCmdBeginDebugUtilsLabelEXT)vkGetDeviceProcAddr(d, "vkCmdBeginDebugUtilsLabelEXT");
+    g->begin_label = (PFN_vkCmdBeginDebugUtilsLabelEXT)g->vk.GetDeviceProcAddr(
+        d, "vkCmdBeginDebugUtilsLabelEXT");
     g->end_label =
-        (PFN_vkCmdEndDebugUtilsLabelEXT)vkGetDeviceProcAddr(d, "vkCmdEndDebugUtilsLabelEXT");
-    g->set_name =
-        (PFN_vkSetDebugUtilsObjectNameEXT)vkGetDeviceProcAddr(d, "vkSetDebugUtilsObjectNameEXT");
+        (PFN_vkCmdEndDebugUtilsLabelEXT)g->vk.GetDeviceProcAddr(d, "vkCmdEndDebugUtilsLabelEXT");
+    g->set_name = (PFN_vkSetDebugUtilsObjectNameEXT)g->vk.GetDeviceProcAddr(
+        d, "vkSetDebugUtilsObjectNameEXT");
 }
 
-static bool open_device(gpu *g, const gpu_desc *desc) {
-    vk_choice choices[VK_MAX_DEVICES];
-    int count = vk_choices_find(g->instance.handle, g->window.surface, choices);
-    const vk_choice *choice = count > 0 ? vk_choice_pick(choices, count, desc->device) : NULL;
-    if (!choice) return false;
+static bool is_small(const gpu_desc *desc) {
+    return desc->small || vk_small_device_wanted();
+}
+
+// What is known of the device before it is there, whoever makes it.
+static void take_choice(gpu *g, const gpu_desc *desc, const vk_choice *choice) {
     g->info = choice->info;
     g->physical = choice->physical;
     g->profile = choice->profile;
-    if (desc->small || vk_small_device_wanted()) vk_profile_make_small(&g->profile);
-    g->family = (uint32_t)vk_queue_family_find(g->physical, g->window.surface);
-    g->copier.family = vk_transfer_family_find(g->physical);
-    g->device = vk_device_create(choice, &g->profile.limits, g->family, g->copier.family,
-                                 g->window.surface != VK_NULL_HANDLE);
-    if (!g->device) return false;
-    vkGetDeviceQueue(g->device, g->family, 0, &g->queue);
+    if (is_small(desc)) vk_profile_make_small(&g->profile);
+}
+
+static bool finish_device(gpu *g, const vk_choice *choice, uint32_t index) {
+    if (!vk_calls_find_device(&g->vk, g->device)) return false;
+    g->vk.GetDeviceQueue(g->device, g->family, index, &g->queue);
     load_limits(g);
     vk_pool_init(g);
     load_calls(g, choice->pushes);
     return true;
 }
 
+static bool open_own_device(gpu *g, const gpu_desc *desc) {
+    vk_choice choices[VK_MAX_DEVICES];
+    int count = vk_choices_find(&g->vk, g->instance.handle, g->window.surface, choices);
+    const vk_choice *choice = count > 0 ? vk_choice_pick(choices, count, desc->device) : NULL;
+    if (!choice) return false;
+    take_choice(g, desc, choice);
+    g->family = (uint32_t)vk_queue_family_find(&g->vk, g->physical, g->window.surface);
+    g->copier.family = vk_transfer_family_find(&g->vk, g->physical);
+    g->device = vk_device_create(g, choice, g->copier.family);
+    return g->device && finish_device(g, choice, 0);
+}
+
+static bool open_host_device(gpu *g, const gpu_desc *desc) {
+    const gpu_host *host = desc->host;
+    vk_choice choice;
+    g->copier.family = -1;
+    if (!vk_host_open(g, host, &choice)) return false;
+    take_choice(g, desc, &choice);
+    g->family = host->family;
+    g->device = host->device;
+    return finish_device(g, &choice, host->index);
+}
+
+static bool validation_wanted(const gpu_desc *desc) {
+    const char *set = getenv("ROIL_VALIDATE");
+    return desc->validate || (set && strcmp(set, "1") == 0);
+}
+
+static bool open_device(gpu *g, const gpu_desc *desc) {
+    if (desc->host) return open_host_device(g, desc);
+    return vk_instance_create(&g->instance, &g->vk, validation_wanted(desc), desc->window,
+                              &g->messages) &&
+           vk_window_open(g, desc->window) && open_own_device(g, desc);
+}
+
 static bool open_timeline(gpu *g) {
     VkSemaphoreTypeCreateInfo type = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO,
                                       .semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE};
     VkSemaphoreCreateInfo info = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO, .pNext = &type};
-    return vk_check(g, vkCreateSemaphore(g->device, &info, NULL, &g->timeline),
+    return vk_check(g, g->vk.CreateSemaphore(g->device, &info, NULL, &g->timeline),
                     "creating the timeline semaphore");
 }
 
@@ -165,11 +163,6 @@ static bool open_commands(gpu *g) {
     return vk_window_prepare(g);
 }
 
-static bool validation_wanted(const gpu_desc *desc) {
-    const char *set = getenv("ROIL_VALIDATE");
-    return desc->validate || (set && strcmp(set, "1") == 0);
-}
-
 // In nanoseconds.
 static uint64_t timeout_of(const gpu *g, double seconds) {
     if (!(seconds > 0.0)) seconds = g->profile.timeout;
@@ -182,9 +175,8 @@ gpu *gpu_create(const gpu_desc *desc) {
     gpu *g = mem_alloc(sizeof *g);
     pthread_mutex_init(&g->retire_lock, NULL);
     pthread_mutex_init(&g->built_lock, NULL);
-    if (!vk_instance_create(&g->instance, validation_wanted(desc), desc->window, &g->messages) ||
-        !vk_window_open(g, desc->window) || !open_device(g, desc) || !open_commands(g) ||
-        !vk_samplers_create(g) || !vk_cache_create(g, desc->cache_dir)) {
+    if (!open_device(g, desc) || !open_commands(g) || !vk_samplers_create(g) ||
+        !vk_cache_create(g, desc->cache_dir)) {
         gpu_destroy(g);
         return NULL;
     }
@@ -203,7 +195,7 @@ static void close_frame(gpu *g, vk_frame *frame) {
     }
     mem_free(frame->uniforms.chunks);
     vk_timer_destroy(g, &frame->timer);
-    vkDestroySemaphore(g->device, frame->acquired, NULL);
+    g->vk.DestroySemaphore(g->device, frame->acquired, NULL);
     vk_batch_destroy(g, &frame->batch);
 }
 
@@ -215,13 +207,13 @@ static void close_device(gpu *g) {
     vk_collect_all(g);
     vk_built_close(g);
     for (int i = 0; i < GPU_SAMPLER_COUNT; i++) {
-        vkDestroySampler(g->device, g->samplers[i], NULL);
+        g->vk.DestroySampler(g->device, g->samplers[i], NULL);
     }
     vk_cache_destroy(g);
-    vkDestroySemaphore(g->device, g->timeline, NULL);
+    g->vk.DestroySemaphore(g->device, g->timeline, NULL);
     vk_copier_close(g);
     vk_pool_deinit(g);
-    vkDestroyDevice(g->device, NULL);
+    if (!g->host.device) g->vk.DestroyDevice(g->device, NULL);
 }
 
 static atomic_bool left_any;
@@ -240,7 +232,8 @@ static bool comes_to_rest(gpu *g) {
         log_write(LOG_WARNING, "%s; its memory stays in use", g->loss);
         return false;
     }
-    VkResult rest = vkDeviceWaitIdle(g->device);
+    if (g->host.device) return true; // all of ours is done, and its other queues are not ours
+    VkResult rest = g->vk.DeviceWaitIdle(g->device);
     if (rest == VK_SUCCESS || rest == VK_ERROR_DEVICE_LOST) return true;
     log_write(LOG_WARNING,
               "the device '%s' cannot be waited for (Vulkan result %d); its memory stays in use",
@@ -255,8 +248,8 @@ void gpu_destroy(gpu *g) {
         return;
     }
     if (g->device) close_device(g);
-    if (g->window.surface) vkDestroySurfaceKHR(g->instance.handle, g->window.surface, NULL);
-    vk_instance_destroy(&g->instance);
+    if (g->window.surface) g->vk.DestroySurfaceKHR(g->instance.handle, g->window.surface, NULL);
+    vk_instance_destroy(&g->instance, &g->vk);
     pthread_mutex_destroy(&g->retire_lock);
     pthread_mutex_destroy(&g->built_lock);
     mem_free(g->retired);

@@ -43,7 +43,8 @@ static uint32_t count_slices(const vk_built *built, const uint32_t groups[3], ui
 }
 
 // Groups are numbered along x first, then y, then z.
-static void dispatch(VkCommandBuffer commands, const vk_built *built, const uint32_t groups[3]) {
+static void dispatch(const gpu *g, VkCommandBuffer commands, const vk_built *built,
+                     const uint32_t groups[3]) {
     uint32_t along = groups[2] > 1 ? 2 : groups[1] > 1 ? 1 : 0;
     uint32_t slices = count_slices(built, groups, along), first[3] = {0}, count[3];
     memcpy(count, groups, sizeof count);
@@ -51,9 +52,10 @@ static void dispatch(VkCommandBuffer commands, const vk_built *built, const uint
         uint32_t end = (uint32_t)((uint64_t)groups[along] * i / slices);
         count[along] = end - first[along];
         if (first[along] == 0)
-            vkCmdDispatch(commands, count[0], count[1], count[2]);
+            g->vk.CmdDispatch(commands, count[0], count[1], count[2]);
         else
-            vkCmdDispatchBase(commands, first[0], first[1], first[2], count[0], count[1], count[2]);
+            g->vk.CmdDispatchBase(commands, first[0], first[1], first[2], count[0], count[1],
+                                  count[2]);
         first[along] = end;
     }
 }
@@ -66,8 +68,8 @@ bool gpu_dispatch(gpu *g, const gpu_dispatch_desc *desc) {
     vk_uses_begin(g);
     if (!vk_bindings_use(g, pipeline, desc->bindings, desc->binding_count)) return false;
     vk_uses_flush(g, commands);
-    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline->built->handle);
+    g->vk.CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline->built->handle);
     if (!vk_bindings_bind(g, commands, pipeline, desc->bindings, desc->binding_count)) return false;
-    dispatch(commands, pipeline->built, groups);
+    dispatch(g, commands, pipeline->built, groups);
     return true;
 }

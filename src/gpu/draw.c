@@ -139,7 +139,7 @@ static VkRenderingAttachmentInfo attachment(const gpu_image *image, bool clear,
 }
 
 // Returns the size of the targets.
-static VkExtent2D begin(VkCommandBuffer commands, const gpu_draw_desc *desc) {
+static VkExtent2D begin(const gpu *g, VkCommandBuffer commands, const gpu_draw_desc *desc) {
     VkRenderingAttachmentInfo colors[GPU_MAX_TARGETS], depth;
     const gpu_image *first = desc->colors[0] ? desc->colors[0] : desc->depth;
     VkExtent2D size = {first->desc.width, first->desc.height};
@@ -157,7 +157,7 @@ static VkExtent2D begin(VkCommandBuffer commands, const gpu_draw_desc *desc) {
         depth = attachment(desc->depth, desc->clear, value);
         info.pDepthAttachment = &depth;
     }
-    vkCmdBeginRendering(commands, &info);
+    g->vk.CmdBeginRendering(commands, &info);
     return size;
 }
 
@@ -172,15 +172,15 @@ static VkRect2D scissor_of(const gpu_draw *draw, VkExtent2D size) {
     return (VkRect2D){{(int32_t)x, (int32_t)y}, {width, height}};
 }
 
-static void place(VkCommandBuffer commands, const gpu_draw *draw, VkExtent2D size) {
+static void place(const gpu *g, VkCommandBuffer commands, const gpu_draw *draw, VkExtent2D size) {
     const uint32_t *v = draw->viewport;
     VkViewport viewport = {
         .width = (float)size.width, .height = (float)size.height, .maxDepth = 1.0f};
     if (v[2] > 0)
         viewport = (VkViewport){(float)v[0], (float)v[1], (float)v[2], (float)v[3], 0.0f, 1.0f};
     VkRect2D scissor = scissor_of(draw, size);
-    vkCmdSetViewport(commands, 0, 1, &viewport);
-    vkCmdSetScissor(commands, 0, 1, &scissor);
+    g->vk.CmdSetViewport(commands, 0, 1, &viewport);
+    g->vk.CmdSetScissor(commands, 0, 1, &scissor);
 }
 
 // A device that takes one command at a time says so by its limit.
@@ -189,9 +189,9 @@ static void draw_commands(const gpu *g, VkCommandBuffer commands, const gpu_draw
     for (uint64_t at = draw->command; left > 0;) {
         uint32_t most = g->limits.maxDrawIndirectCount, count = left < most ? left : most;
         if (draw->indices)
-            vkCmdDrawIndexedIndirect(commands, draw->commands->handle, at, count, stride);
+            g->vk.CmdDrawIndexedIndirect(commands, draw->commands->handle, at, count, stride);
         else
-            vkCmdDrawIndirect(commands, draw->commands->handle, at, count, stride);
+            g->vk.CmdDrawIndirect(commands, draw->commands->handle, at, count, stride);
         at += (uint64_t)count * stride;
         left -= count;
     }
@@ -200,16 +200,16 @@ static void draw_commands(const gpu *g, VkCommandBuffer commands, const gpu_draw
 static bool record(gpu *g, VkCommandBuffer commands, const gpu_pipeline *pipeline,
                    const gpu_draw *draw, VkExtent2D size) {
     if (!vk_bindings_bind(g, commands, pipeline, draw->bindings, draw->binding_count)) return false;
-    place(commands, draw, size);
+    place(g, commands, draw, size);
     uint32_t instances = draw->instances ? draw->instances : 1;
     if (draw->indices)
-        vkCmdBindIndexBuffer(commands, draw->indices->handle, 0, VK_INDEX_TYPE_UINT32);
+        g->vk.CmdBindIndexBuffer(commands, draw->indices->handle, 0, VK_INDEX_TYPE_UINT32);
     if (draw->commands)
         draw_commands(g, commands, draw);
     else if (draw->indices)
-        vkCmdDrawIndexed(commands, draw->vertices, instances, draw->first_vertex, 0, 0);
+        g->vk.CmdDrawIndexed(commands, draw->vertices, instances, draw->first_vertex, 0, 0);
     else
-        vkCmdDraw(commands, draw->vertices, instances, draw->first_vertex, 0);
+        g->vk.CmdDraw(commands, draw->vertices, instances, draw->first_vertex, 0);
     return true;
 }
 
@@ -219,14 +219,15 @@ bool gpu_draw_all(gpu *g, const gpu_draw_desc *desc) {
     vk_uses_begin(g);
     if (!use_all(g, desc)) return false;
     vk_uses_flush(g, commands);
-    VkExtent2D size = begin(commands, desc);
+    VkExtent2D size = begin(g, commands, desc);
     bool ok = true;
     if (desc->draw_count > 0) {
-        vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, desc->pipeline->built->handle);
+        g->vk.CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS,
+                              desc->pipeline->built->handle);
     }
     for (size_t i = 0; i < desc->draw_count && ok; i++) {
         ok = record(g, commands, desc->pipeline, &desc->draws[i], size);
     }
-    vkCmdEndRendering(commands);
+    g->vk.CmdEndRendering(commands);
     return ok;
 }

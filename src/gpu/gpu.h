@@ -48,7 +48,37 @@ typedef struct gpu_window {
     void *user;
 } gpu_window;
 
+// The Vulkan device of a program that embeds roil, which makes and destroys it. Handles are
+// Vulkan's own, as pointers; those that need not be pointers there are numbers here.
+typedef struct gpu_host {
+    // Its vkGetInstanceProcAddr; NULL: that of the loader which roil is linked to.
+    void (*(*get_proc)(void *instance, const char *name))(void);
+    void *instance, *physical, *device;
+    uint32_t family, index; // of the queue: graphics and compute
+    const void *features;   // VkPhysicalDeviceFeatures2 and its chain, as enabled; NULL: what
+                            // gpu_host_find_needs asks for
+    const char *const *extensions; // of the device, as enabled; only read by gpu_create
+    uint32_t extension_count;
+    bool labels; // VK_EXT_debug_utils is enabled in the instance
+    // Called around submissions to the queue, where others submit to it. Both or none.
+    void (*lock)(void *user, uint32_t family, uint32_t index);
+    void (*unlock)(void *user, uint32_t family, uint32_t index);
+    void *user;
+} gpu_host;
+
+enum { GPU_MAX_NEEDS = 4, GPU_MAX_SYNC = 8 };
+typedef struct gpu_host_needs {
+    const char *extensions[GPU_MAX_NEEDS]; // of the device, those that it has; static
+    uint32_t extension_count;
+} gpu_host_needs;
+// Tells what a host should make its device with. `core`, `v11`, `v12` and `v13` are Vulkan's
+// structs of features, which are filled and chained in this order. False with a message: the device
+// cannot run roil. Any thread.
+bool gpu_host_find_needs(const gpu_host *host, void *core, void *v11, void *v12, void *v13,
+                         gpu_host_needs *out);
+
 typedef struct gpu_desc {
+    const gpu_host *host;  // whose device to use; NULL: one of its own, as follows
     const char *device;    // part of a name (any case) or an index as `gpu_list` counts; NULL: best
     const char *cache_dir; // folder of the pipeline cache; NULL: no cache
     bool validate; // Khronos validation with synchronization validation; also $ROIL_VALIDATE=1
@@ -335,6 +365,32 @@ bool gpu_draw_all(gpu *g, const gpu_draw_desc *desc);
 // and one whose surface is being replaced, is passed over. False when the device or surface is
 // lost.
 bool gpu_present(gpu *g, gpu_image *image);
+
+// ---- images and semaphores of a host ----------------------------------------------------------
+
+typedef struct gpu_semaphore {
+    uint64_t handle; // VkSemaphore
+    uint64_t value;  // of a timeline; of a binary one it does not count
+} gpu_semaphore;
+// The next frame waits for these before it begins, and signals those when all its work is done.
+// False with a message: they are more than GPU_MAX_SYNC, with what was asked for before.
+bool gpu_frame_sync(gpu *g, const gpu_semaphore *waits, size_t wait_count,
+                    const gpu_semaphore *signals, size_t signal_count);
+
+typedef struct gpu_host_image {
+    uint64_t image; // VkImage, of one level and one layer; 0: none
+    int format;     // VkFormat
+    uint32_t width, height;
+    int before, after; // VkImageLayout: as it is handed over, and as it is given back
+    const char *label; // for messages
+} gpu_host_image;
+// An image over a host's image of depths, in an open frame, for shaders to sample. NULL with a
+// message. Whoever borrows it gives it back in the same frame, which destroys it.
+gpu_image *gpu_image_borrow(gpu *g, const gpu_host_image *from);
+void gpu_image_give_back(gpu *g, gpu_image *borrowed, const gpu_host_image *to);
+// In an open frame: copies an image of colours to a host's, scaled and converted where these
+// differ. `from` NULL: only the layout changes.
+bool gpu_image_hand_out(gpu *g, gpu_image *from, const gpu_host_image *to);
 
 void gpu_image_clear(gpu *g, gpu_image *image, const float color[4]); // inside a frame, all mips
 void gpu_buffer_fill(gpu *g, gpu_buffer *buffer, uint32_t word);      // inside a frame

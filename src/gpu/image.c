@@ -81,7 +81,7 @@ static VkImageUsageFlags usage_of(const gpu_image_desc *d) {
 
 static bool check_device(gpu *g, const gpu_image_desc *d, const VkImageCreateInfo *info) {
     VkImageFormatProperties p;
-    VkResult result = vkGetPhysicalDeviceImageFormatProperties(
+    VkResult result = g->vk.GetPhysicalDeviceImageFormatProperties(
         g->physical, info->format, info->imageType, info->tiling, info->usage, 0, &p);
     if (!vk_check(g, result, "image '%s' of format %s", d->label, gpu_format_name(d->format))) {
         return false;
@@ -101,11 +101,11 @@ static bool check_device(gpu *g, const gpu_image_desc *d, const VkImageCreateInf
 
 static void image_free(gpu *g, void *object) {
     gpu_image *image = object;
-    vkDestroyImageView(g->device, image->all, NULL);
+    g->vk.DestroyImageView(g->device, image->all, NULL);
     for (uint32_t i = 0; i < VK_MAX_MIPS; i++) {
-        vkDestroyImageView(g->device, image->mips[i], NULL);
+        g->vk.DestroyImageView(g->device, image->mips[i], NULL);
     }
-    vkDestroyImage(g->device, image->handle, NULL);
+    if (!image->borrowed) g->vk.DestroyImage(g->device, image->handle, NULL);
     vk_memory_free(g, &image->memory);
     mem_free((char *)image->desc.label);
     mem_free(image);
@@ -121,7 +121,7 @@ static bool create_view(gpu *g, gpu_image *image, uint32_t mip, uint32_t count, 
                                                        .baseMipLevel = mip,
                                                        .levelCount = count,
                                                        .layerCount = 1}};
-    if (!vk_check(g, vkCreateImageView(g->device, &info, NULL, out),
+    if (!vk_check(g, g->vk.CreateImageView(g->device, &info, NULL, out),
                   "creating a view of image '%s'", image->desc.label)) {
         return false;
     }
@@ -149,17 +149,17 @@ static bool image_build(gpu *g, gpu_image *image) {
                               .tiling = VK_IMAGE_TILING_OPTIMAL,
                               .usage = usage_of(d)};
     if (!check_device(g, d, &info)) return false;
-    if (!vk_check(g, vkCreateImage(g->device, &info, NULL, &image->handle), "creating image '%s'",
-                  d->label)) {
+    if (!vk_check(g, g->vk.CreateImage(g->device, &info, NULL, &image->handle),
+                  "creating image '%s'", d->label)) {
         return false;
     }
     vk_name(g, VK_OBJECT_TYPE_IMAGE, VK_HANDLE(image->handle), d->label);
     VkMemoryRequirements needs;
-    vkGetImageMemoryRequirements(g->device, image->handle, &needs);
+    g->vk.GetImageMemoryRequirements(g->device, image->handle, &needs);
     if (!vk_memory_alloc(g, &needs, VK_MEMORY_DEVICE, true, d->label, &image->memory)) return false;
     return vk_check(g,
-                    vkBindImageMemory(g->device, image->handle, image->memory.block->memory,
-                                      image->memory.place.offset),
+                    g->vk.BindImageMemory(g->device, image->handle, image->memory.block->memory,
+                                          image->memory.place.offset),
                     "binding memory to image '%s'", d->label) &&
            create_views(g, image);
 }

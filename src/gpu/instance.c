@@ -11,10 +11,10 @@ enum { MAX_WINDOW_EXTENSIONS = 8 };
 
 static const char validation_layer[] = "VK_LAYER_KHRONOS_validation";
 
-static bool layer_exists(const char *name) {
+static bool layer_exists(const vk_calls *vk, const char *name) {
     VkLayerProperties list[64];
     uint32_t count = COUNT_OF(list);
-    VkResult result = vkEnumerateInstanceLayerProperties(&count, list);
+    VkResult result = vk->EnumerateInstanceLayerProperties(&count, list);
     if (result != VK_SUCCESS && result != VK_INCOMPLETE) return false;
     for (uint32_t i = 0; i < count; i++) {
         if (strcmp(list[i].layerName, name) == 0) return true;
@@ -22,10 +22,10 @@ static bool layer_exists(const char *name) {
     return false;
 }
 
-static bool extension_exists(const char *layer, const char *name) {
+static bool extension_exists(const vk_calls *vk, const char *layer, const char *name) {
     VkExtensionProperties list[128];
     uint32_t count = COUNT_OF(list);
-    VkResult result = vkEnumerateInstanceExtensionProperties(layer, &count, list);
+    VkResult result = vk->EnumerateInstanceExtensionProperties(layer, &count, list);
     if (result != VK_SUCCESS && result != VK_INCOMPLETE) return false;
     for (uint32_t i = 0; i < count; i++) {
         if (strcmp(list[i].extensionName, name) == 0) return true;
@@ -52,29 +52,29 @@ static const VkValidationFeaturesEXT validation_features = {
     .enabledValidationFeatureCount = COUNT_OF(validation_enables),
     .pEnabledValidationFeatures = validation_enables};
 
-static bool version_is_enough(void) {
+static bool version_is_enough(const vk_calls *vk) {
     uint32_t version = VK_API_VERSION_1_0;
-    if (vkEnumerateInstanceVersion(&version) != VK_SUCCESS || version < VK_API_VERSION_1_3) {
+    if (vk->EnumerateInstanceVersion(&version) != VK_SUCCESS || version < VK_API_VERSION_1_3) {
         return err_set("the Vulkan loader is version %u.%u; roil needs 1.3 or later",
                        VK_API_VERSION_MAJOR(version), VK_API_VERSION_MINOR(version));
     }
     return true;
 }
 
-static bool window_extensions_exist(const gpu_window *window) {
+static bool window_extensions_exist(const vk_calls *vk, const gpu_window *window) {
     if (window->extension_count > MAX_WINDOW_EXTENSIONS) {
         return err_set("the window needs %u Vulkan extensions; at most %d are accepted",
                        window->extension_count, MAX_WINDOW_EXTENSIONS);
     }
     for (uint32_t i = 0; i < window->extension_count; i++) {
-        if (extension_exists(NULL, window->extensions[i])) continue;
+        if (extension_exists(vk, NULL, window->extensions[i])) continue;
         return err_set("no Vulkan driver can show pictures in this window: %s is missing",
                        window->extensions[i]);
     }
     return true;
 }
 
-static bool create(vk_instance *out, const gpu_window *window,
+static bool create(vk_instance *out, const vk_calls *vk, const gpu_window *window,
                    const VkDebugUtilsMessengerCreateInfoEXT *messenger) {
     const char *extensions[2 + MAX_WINDOW_EXTENSIONS], *layers[1];
     VkInstanceCreateInfo info = {
@@ -95,11 +95,11 @@ static bool create(vk_instance *out, const gpu_window *window,
     if (out->validating) {
         layers[info.enabledLayerCount++] = validation_layer;
         info.pNext = messenger;
-        if (extension_exists(validation_layer, VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME)) {
+        if (extension_exists(vk, validation_layer, VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME)) {
             extensions[info.enabledExtensionCount++] = VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME;
         }
     }
-    VkResult result = vkCreateInstance(&info, NULL, &out->handle);
+    VkResult result = vk->CreateInstance(&info, NULL, &out->handle);
     if (result == VK_ERROR_INCOMPATIBLE_DRIVER) {
         return err_set("no Vulkan driver is installed; install the driver of your GPU, or Mesa's "
                        "software driver (Debian: mesa-vulkan-drivers)");
@@ -110,13 +110,13 @@ static bool create(vk_instance *out, const gpu_window *window,
     return true;
 }
 
-bool vk_instance_create(vk_instance *out, bool validate, const gpu_window *window,
+bool vk_instance_create(vk_instance *out, vk_calls *vk, bool validate, const gpu_window *window,
                         _Atomic uint64_t *messages) {
     memset(out, 0, sizeof *out);
-    if (!version_is_enough()) return false;
-    if (window && !window_extensions_exist(window)) return false;
-    out->labels = extension_exists(NULL, VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
-    out->validating = validate && out->labels && layer_exists(validation_layer);
+    if (!vk_calls_find_global(vk, NULL) || !version_is_enough(vk)) return false;
+    if (window && !window_extensions_exist(vk, window)) return false;
+    out->labels = extension_exists(vk, NULL, VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
+    out->validating = validate && out->labels && layer_exists(vk, validation_layer);
     if (validate && !out->validating) {
         log_write(LOG_WARNING, "%s is not installed: running without validation", validation_layer);
     }
@@ -129,28 +129,23 @@ bool vk_instance_create(vk_instance *out, bool validate, const gpu_window *windo
         .pfnUserCallback = on_message,
         .pUserData = messages,
     };
-    if (!create(out, window, &messenger)) return false;
+    if (!create(out, vk, window, &messenger)) return false;
+    if (!vk_calls_find_instance(vk, out->handle)) return false;
     if (!out->validating) return true;
 
     messenger.pNext = NULL;
-    PFN_vkCreateDebugUtilsMessengerEXT create_messenger =
-        (PFN_vkCreateDebugUtilsMessengerEXT)vkGetInstanceProcAddr(out->handle,
-                                                                  "vkCreateDebugUtilsMessengerEXT");
-    if (!create_messenger ||
-        create_messenger(out->handle, &messenger, NULL, &out->messenger) != VK_SUCCESS) {
-        vk_instance_destroy(out);
+    if (!vk->CreateDebugUtilsMessengerEXT ||
+        vk->CreateDebugUtilsMessengerEXT(out->handle, &messenger, NULL, &out->messenger) !=
+            VK_SUCCESS) {
+        vk_instance_destroy(out, vk);
         return err_set("the validation layer takes no messenger");
     }
     return true;
 }
 
-void vk_instance_destroy(vk_instance *instance) {
-    if (instance->messenger) {
-        PFN_vkDestroyDebugUtilsMessengerEXT destroy_messenger =
-            (PFN_vkDestroyDebugUtilsMessengerEXT)vkGetInstanceProcAddr(
-                instance->handle, "vkDestroyDebugUtilsMessengerEXT");
-        destroy_messenger(instance->handle, instance->messenger, NULL);
-    }
-    if (instance->handle) vkDestroyInstance(instance->handle, NULL);
+void vk_instance_destroy(vk_instance *instance, const vk_calls *vk) {
+    if (instance->messenger)
+        vk->DestroyDebugUtilsMessengerEXT(instance->handle, instance->messenger, NULL);
+    if (instance->handle && vk->DestroyInstance) vk->DestroyInstance(instance->handle, NULL);
     memset(instance, 0, sizeof *instance);
 }

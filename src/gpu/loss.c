@@ -94,7 +94,7 @@ static VkResult wait_once(gpu *g, uint64_t serial, wait *w) {
                                 .semaphoreCount = 1,
                                 .pSemaphores = &g->timeline,
                                 .pValues = &serial};
-    VkResult result = vkWaitSemaphores(g->device, &info, time);
+    VkResult result = g->vk.WaitSemaphores(g->device, &info, time);
     if (result != VK_TIMEOUT) return result;
     w->all += time;
     w->since_progress =
@@ -138,7 +138,7 @@ void gpu_give_up(gpu *g) {
 
 uint64_t vk_completed(gpu *g) {
     uint64_t value = 0;
-    VkResult result = vkGetSemaphoreCounterValue(g->device, g->timeline, &value);
+    VkResult result = g->vk.GetSemaphoreCounterValue(g->device, g->timeline, &value);
     if (result == VK_ERROR_DEVICE_LOST) vk_lose(g, result);
     // A lost device may report any value; nothing beyond what was submitted can have finished.
     if (result == VK_SUCCESS && value > g->completed && value <= g->submitted) {

@@ -61,7 +61,7 @@ static void block_destroy(gpu *g, vk_block *block) {
     if (block->memory) {
         g->pool.reserved -= block->spans.size;
         drop_spare(g, side_of(g, block->type), block->spans.size);
-        vkFreeMemory(g->device, block->memory, NULL);
+        g->vk.FreeMemory(g->device, block->memory, NULL);
     }
     allocator_deinit(&block->spans);
     mem_free(block);
@@ -71,7 +71,7 @@ static VkResult block_allocate(gpu *g, uint64_t size, uint32_t type, VkDeviceMem
     VkMemoryAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
                                  .allocationSize = size,
                                  .memoryTypeIndex = type};
-    return vkAllocateMemory(g->device, &info, NULL, out);
+    return g->vk.AllocateMemory(g->device, &info, NULL, out);
 }
 
 static vk_block *block_create(gpu *g, uint64_t size, uint32_t type, bool image, const char *label) {
@@ -97,7 +97,7 @@ static vk_block *block_create(gpu *g, uint64_t size, uint32_t type, bool image, 
     g->pool.reserved += size;
     if (g->heaps.memoryTypes[type].propertyFlags & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT) {
         void *map = NULL;
-        result = vkMapMemory(g->device, memory, 0, VK_WHOLE_SIZE, 0, &map);
+        result = g->vk.MapMemory(g->device, memory, 0, VK_WHOLE_SIZE, 0, &map);
         if (!vk_check(g, result, "mapping the memory of '%s'", label)) {
             block_destroy(g, block);
             return NULL;

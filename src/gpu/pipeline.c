@@ -28,14 +28,14 @@ static bool create_layout(gpu *g, const gpu_pipeline *pipeline, VkShaderStageFla
         .flags = g->push_descriptors ? VK_DESCRIPTOR_SET_LAYOUT_CREATE_PUSH_DESCRIPTOR_BIT_KHR : 0,
         .bindingCount = pipeline->slot_count,
         .pBindings = bindings};
-    if (!vk_check(g, vkCreateDescriptorSetLayout(g->device, &set, NULL, &out->set_layout),
+    if (!vk_check(g, g->vk.CreateDescriptorSetLayout(g->device, &set, NULL, &out->set_layout),
                   "creating the slots of pipeline '%s'", pipeline->label)) {
         return false;
     }
     VkPipelineLayoutCreateInfo info = {.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
                                        .setLayoutCount = 1,
                                        .pSetLayouts = &out->set_layout};
-    return vk_check(g, vkCreatePipelineLayout(g->device, &info, NULL, &out->layout),
+    return vk_check(g, g->vk.CreatePipelineLayout(g->device, &info, NULL, &out->layout),
                     "creating the layout of pipeline '%s'", pipeline->label);
 }
 
@@ -101,7 +101,7 @@ static bool create_module(gpu *g, const char *label, const uint32_t *code, size_
                           VkShaderModule *out) {
     VkShaderModuleCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, .codeSize = size, .pCode = code};
-    return vk_check(g, vkCreateShaderModule(g->device, &info, NULL, out),
+    return vk_check(g, g->vk.CreateShaderModule(g->device, &info, NULL, out),
                     "loading the shader of pipeline '%s'", label);
 }
 
@@ -206,8 +206,9 @@ static bool build_compute(gpu *g, const gpu_pipeline *pipeline, const gpu_comput
                   .module = module,
                   .pName = "main"},
         .layout = out->layout};
-    VkResult result = vkCreateComputePipelines(g->device, g->cache, 1, &info, NULL, &out->handle);
-    vkDestroyShaderModule(g->device, module, NULL);
+    VkResult result =
+        g->vk.CreateComputePipelines(g->device, g->cache, 1, &info, NULL, &out->handle);
+    g->vk.DestroyShaderModule(g->device, module, NULL);
     return vk_check(g, result, "creating pipeline '%s'", pipeline->label);
 }
 
@@ -316,7 +317,7 @@ static VkResult create_graphics(gpu *g, const gpu_pipeline *pipeline, const gpu_
                                          .pColorBlendState = &blend,
                                          .pDynamicState = &dynamic,
                                          .layout = out->layout};
-    return vkCreateGraphicsPipelines(g->device, g->cache, 1, &info, NULL, &out->handle);
+    return g->vk.CreateGraphicsPipelines(g->device, g->cache, 1, &info, NULL, &out->handle);
 }
 
 static bool build_graphics(gpu *g, const gpu_pipeline *pipeline, const gpu_graphics_desc *desc,
@@ -336,8 +337,8 @@ static bool build_graphics(gpu *g, const gpu_pipeline *pipeline, const gpu_graph
                                       false, &stages[1].module) &&
               vk_check(g, create_graphics(g, pipeline, desc, stages, out), "creating pipeline '%s'",
                        pipeline->label);
-    vkDestroyShaderModule(g->device, stages[0].module, NULL);
-    vkDestroyShaderModule(g->device, stages[1].module, NULL);
+    g->vk.DestroyShaderModule(g->device, stages[0].module, NULL);
+    g->vk.DestroyShaderModule(g->device, stages[1].module, NULL);
     return ok;
 }
 

@@ -10,8 +10,9 @@ static const uint64_t longest_turn = 1000000000; // nanoseconds
 
 static VkResult acquire(gpu *g) {
     vk_swapchain *chain = g->window.swapchain;
-    VkResult result = vkAcquireNextImageKHR(g->device, chain->handle, longest_turn,
-                                            g->frame->acquired, VK_NULL_HANDLE, &g->window.image);
+    VkResult result =
+        g->vk.AcquireNextImageKHR(g->device, chain->handle, longest_turn, g->frame->acquired,
+                                  VK_NULL_HANDLE, &g->window.image);
     if (result == VK_ERROR_OUT_OF_DATE_KHR) chain->stale = true;
     if (result == VK_TIMEOUT) return VK_NOT_READY;
     return result == VK_SUBOPTIMAL_KHR ? VK_SUCCESS : result;
@@ -27,8 +28,8 @@ static VkResult obtain(gpu *g, VkExtent2D size) {
     return VK_NOT_READY;
 }
 
-static void relayout(VkCommandBuffer commands, VkImage image, VkImageLayout from, VkImageLayout to,
-                     bool filled) {
+static void relayout(const gpu *g, VkCommandBuffer commands, VkImage image, VkImageLayout from,
+                     VkImageLayout to, bool filled) {
     VkPipelineStageFlags2 transfer = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
     VkAccessFlags2 write = VK_ACCESS_2_TRANSFER_WRITE_BIT;
     VkImageMemoryBarrier2 barrier = {
@@ -47,7 +48,7 @@ static void relayout(VkCommandBuffer commands, VkImage image, VkImageLayout from
     VkDependencyInfo info = {.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
                              .imageMemoryBarrierCount = 1,
                              .pImageMemoryBarriers = &barrier};
-    vkCmdPipelineBarrier2(commands, &info);
+    g->vk.CmdPipelineBarrier2(commands, &info);
 }
 
 // Texel by texel where the sizes are equal.
@@ -70,11 +71,12 @@ static void copy_scaled(gpu *g, VkCommandBuffer commands, gpu_image *image) {
     vk_uses_begin(g);
     vk_use_image(g, image, 0, 1, vk_image_from);
     vk_uses_flush(g, commands);
-    relayout(commands, target, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+    relayout(g, commands, target, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
              false);
-    vkCmdBlitImage(commands, image->handle, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, target,
-                   VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region, filter_for(g, d, chain->size));
-    relayout(commands, target, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+    g->vk.CmdBlitImage(commands, image->handle, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, target,
+                       VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region,
+                       filter_for(g, d, chain->size));
+    relayout(g, commands, target, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
              VK_IMAGE_LAYOUT_PRESENT_SRC_KHR, true);
 }
 
@@ -128,7 +130,7 @@ bool vk_present(gpu *g) {
                              .swapchainCount = 1,
                              .pSwapchains = &chain->handle,
                              .pImageIndices = &g->window.image};
-    VkResult result = vkQueuePresentKHR(g->queue, &info);
+    VkResult result = g->vk.QueuePresentKHR(g->queue, &info);
     switch (result) {
     case VK_SUCCESS:
         chain->fitted = true;

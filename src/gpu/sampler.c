@@ -26,7 +26,7 @@ bool vk_samplers_create(gpu *g) {
                                     .addressModeW = kinds[i].address,
                                     .maxLod = VK_LOD_CLAMP_NONE,
                                     .borderColor = VK_BORDER_COLOR_FLOAT_TRANSPARENT_BLACK};
-        if (!vk_check(g, vkCreateSampler(g->device, &info, NULL, &g->samplers[i]),
+        if (!vk_check(g, g->vk.CreateSampler(g->device, &info, NULL, &g->samplers[i]),
                       "creating a sampler")) {
             return false;
         }

@@ -12,9 +12,9 @@
 
 void vk_built_free(gpu *g, void *object) {
     vk_built *built = object;
-    vkDestroyPipeline(g->device, built->handle, NULL);
-    vkDestroyPipelineLayout(g->device, built->layout, NULL);
-    vkDestroyDescriptorSetLayout(g->device, built->set_layout, NULL);
+    g->vk.DestroyPipeline(g->device, built->handle, NULL);
+    g->vk.DestroyPipelineLayout(g->device, built->layout, NULL);
+    g->vk.DestroyDescriptorSetLayout(g->device, built->set_layout, NULL);
     mem_free(built);
 }
 

@@ -10,15 +10,15 @@
 static void swapchain_free(gpu *g, void *object) {
     vk_swapchain *chain = object;
     for (uint32_t i = 0; i < chain->count; i++) {
-        vkDestroySemaphore(g->device, chain->drawn[i], NULL);
+        g->vk.DestroySemaphore(g->device, chain->drawn[i], NULL);
     }
-    vkDestroySwapchainKHR(g->device, chain->handle, NULL);
+    g->vk.DestroySwapchainKHR(g->device, chain->handle, NULL);
     mem_free(chain);
 }
 
 static void old_surface_free(gpu *g, void *object) {
     (void)object;
-    vkDestroySurfaceKHR(g->instance.handle, g->window.old_surface, NULL);
+    g->vk.DestroySurfaceKHR(g->instance.handle, g->window.old_surface, NULL);
     g->window.old_surface = VK_NULL_HANDLE;
 }
 
@@ -39,7 +39,7 @@ static bool choose_format(gpu *g, VkSurfaceFormatKHR *out) {
     VkSurfaceFormatKHR list[64];
     uint32_t count = COUNT_OF(list);
     VkResult result =
-        vkGetPhysicalDeviceSurfaceFormatsKHR(g->physical, g->window.surface, &count, list);
+        g->vk.GetPhysicalDeviceSurfaceFormatsKHR(g->physical, g->window.surface, &count, list);
     if (result == VK_INCOMPLETE) result = VK_SUCCESS;
     if (!vk_check(g, result, "asking for the formats of the window")) return false;
     for (uint32_t i = 0; i < count; i++) {
@@ -54,7 +54,7 @@ static bool choose_format(gpu *g, VkSurfaceFormatKHR *out) {
 static bool check_usage(gpu *g) {
     VkSurfaceCapabilitiesKHR caps;
     VkResult result =
-        vkGetPhysicalDeviceSurfaceCapabilitiesKHR(g->physical, g->window.surface, &caps);
+        g->vk.GetPhysicalDeviceSurfaceCapabilitiesKHR(g->physical, g->window.surface, &caps);
     if (!vk_check(g, result, "asking what the window can do")) return false;
     if (caps.supportedUsageFlags & VK_IMAGE_USAGE_TRANSFER_DST_BIT) return true;
     return err_set("the window takes no copies of pictures from '%s'", g->info.name);
@@ -65,7 +65,7 @@ bool vk_window_prepare(gpu *g) {
     if (!choose_format(g, &g->window.format) || !check_usage(g)) return false;
     VkSemaphoreCreateInfo info = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO};
     for (int i = 0; i < GPU_FRAMES_IN_FLIGHT; i++) {
-        VkResult result = vkCreateSemaphore(g->device, &info, NULL, &g->frames[i].acquired);
+        VkResult result = g->vk.CreateSemaphore(g->device, &info, NULL, &g->frames[i].acquired);
         if (!vk_check(g, result, "creating a semaphore")) return false;
     }
     return true;
@@ -103,10 +103,10 @@ static VkCompositeAlphaFlagBitsKHR choose_alpha(const VkSurfaceCapabilitiesKHR *
 
 static VkResult get_images(gpu *g, vk_swapchain *chain) {
     uint32_t count = VK_MAX_SHOWN;
-    VkResult result = vkGetSwapchainImagesKHR(g->device, chain->handle, &count, chain->images);
+    VkResult result = g->vk.GetSwapchainImagesKHR(g->device, chain->handle, &count, chain->images);
     VkSemaphoreCreateInfo info = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO};
     while (result == VK_SUCCESS && chain->count < count) {
-        result = vkCreateSemaphore(g->device, &info, NULL, &chain->drawn[chain->count]);
+        result = g->vk.CreateSemaphore(g->device, &info, NULL, &chain->drawn[chain->count]);
         if (result == VK_SUCCESS) chain->count++;
     }
     return result;
@@ -131,7 +131,7 @@ static VkResult swapchain_create(gpu *g, const VkSurfaceCapabilitiesKHR *caps, V
                                      .oldSwapchain = old ? old->handle : VK_NULL_HANDLE};
     vk_swapchain *chain = mem_alloc(sizeof *chain);
     chain->size = size;
-    VkResult result = vkCreateSwapchainKHR(g->device, &info, NULL, &chain->handle);
+    VkResult result = g->vk.CreateSwapchainKHR(g->device, &info, NULL, &chain->handle);
     retire_swapchain(g); // the old one is of no more use, whatever the result
     if (result == VK_SUCCESS) result = get_images(g, chain);
     if (result == VK_SUCCESS) {
@@ -149,7 +149,7 @@ static uint32_t clamp(uint32_t value, uint32_t least, uint32_t most) {
 VkResult vk_swapchain_fit(gpu *g, VkExtent2D size) {
     VkSurfaceCapabilitiesKHR caps;
     VkResult result =
-        vkGetPhysicalDeviceSurfaceCapabilitiesKHR(g->physical, g->window.surface, &caps);
+        g->vk.GetPhysicalDeviceSurfaceCapabilitiesKHR(g->physical, g->window.surface, &caps);
     if (result != VK_SUCCESS) return result;
     if (caps.currentExtent.width != UINT32_MAX) {
         size = caps.currentExtent;

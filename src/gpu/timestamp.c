@@ -17,48 +17,48 @@ bool vk_timer_create(gpu *g, vk_timer *out) {
     VkQueryPoolCreateInfo info = {.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
                                   .queryType = VK_QUERY_TYPE_TIMESTAMP,
                                   .queryCount = 2 * GPU_MAX_PASSES};
-    return vk_check(g, vkCreateQueryPool(g->device, &info, NULL, &out->queries),
+    return vk_check(g, g->vk.CreateQueryPool(g->device, &info, NULL, &out->queries),
                     "creating timestamp queries");
 }
 
 void vk_timer_destroy(gpu *g, vk_timer *timer) {
-    vkDestroyQueryPool(g->device, timer->queries, NULL);
-    for (int i = 0; i < GPU_MAX_PASSES; i++) vkDestroyEvent(g->device, timer->ends[i], NULL);
+    g->vk.DestroyQueryPool(g->device, timer->queries, NULL);
+    for (int i = 0; i < GPU_MAX_PASSES; i++) g->vk.DestroyEvent(g->device, timer->ends[i], NULL);
 }
 
 void vk_timer_begin(gpu *g, vk_timer *timer, VkCommandBuffer commands) {
     for (uint32_t i = 0; i < timer->count; i++) {
-        if (timer->ends[i]) vkResetEvent(g->device, timer->ends[i]);
+        if (timer->ends[i]) g->vk.ResetEvent(g->device, timer->ends[i]);
     }
     timer->count = 0;
     timer->longest = 0.0;
     timer->began = clock_seconds();
-    if (timer->queries) vkCmdResetQueryPool(commands, timer->queries, 0, 2 * GPU_MAX_PASSES);
+    if (timer->queries) g->vk.CmdResetQueryPool(commands, timer->queries, 0, 2 * GPU_MAX_PASSES);
 }
 
 static void stamp(gpu *g, uint32_t query) {
     if (!g->frame->timer.queries) return;
-    vkCmdWriteTimestamp2(g->frame->batch.commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                         g->frame->timer.queries, query);
+    g->vk.CmdWriteTimestamp2(g->frame->batch.commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                             g->frame->timer.queries, query);
 }
 
 // Without memory for the event a hang goes unnamed, and all else works.
 static void mark_end(gpu *g, vk_timer *timer, uint32_t pass) {
     VkEventCreateInfo info = {.sType = VK_STRUCTURE_TYPE_EVENT_CREATE_INFO};
     VkEvent *end = &timer->ends[pass];
-    if (!*end && vkCreateEvent(g->device, &info, NULL, end) != VK_SUCCESS) return;
+    if (!*end && g->vk.CreateEvent(g->device, &info, NULL, end) != VK_SUCCESS) return;
     VkMemoryBarrier2 all = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
                             .srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT};
     VkDependencyInfo after = {.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
                               .memoryBarrierCount = 1,
                               .pMemoryBarriers = &all};
-    vkCmdSetEvent2(g->frame->batch.commands, *end, &after);
+    g->vk.CmdSetEvent2(g->frame->batch.commands, *end, &after);
 }
 
 const char *vk_timer_running(gpu *g, const vk_timer *timer) {
     for (uint32_t i = 0; i < timer->count; i++) {
         if (!timer->ends[i]) return NULL;
-        VkResult status = vkGetEventStatus(g->device, timer->ends[i]);
+        VkResult status = g->vk.GetEventStatus(g->device, timer->ends[i]);
         if (status == VK_EVENT_RESET) return timer->labels[i];
         if (status != VK_EVENT_SET) return NULL;
     }
@@ -119,8 +119,8 @@ size_t gpu_frame_times(gpu *g, uint64_t frame, gpu_pass_time *out, size_t capaci
     if (timer->queries) {
         if (!vk_wait_where_driver_would(g)) return 0;
         VkResult result =
-            vkGetQueryPoolResults(g->device, timer->queries, 0, 2 * timer->count, sizeof ticks,
-                                  ticks, sizeof *ticks, VK_QUERY_RESULT_64_BIT);
+            g->vk.GetQueryPoolResults(g->device, timer->queries, 0, 2 * timer->count, sizeof ticks,
+                                      ticks, sizeof *ticks, VK_QUERY_RESULT_64_BIT);
         if (result != VK_NOT_READY && !vk_check(g, result, "reading timestamps")) return 0;
     }
     size_t count = timer->count < capacity ? timer->count : capacity;

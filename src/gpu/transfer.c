@@ -25,10 +25,10 @@ struct gpu_transfer {
 // ---- the queue --------------------------------------------------------------------------------
 
 // A family that copies and does nothing else, in texels of any alignment. -1: none.
-int vk_transfer_family_find(VkPhysicalDevice physical) {
+int vk_transfer_family_find(const vk_calls *vk, VkPhysicalDevice physical) {
     VkQueueFamilyProperties list[16];
     uint32_t count = COUNT_OF(list);
-    vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, list);
+    vk->GetPhysicalDeviceQueueFamilyProperties(physical, &count, list);
     for (uint32_t i = 0; i < count; i++) {
         const VkQueueFlags other =
             VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT | VK_QUEUE_VIDEO_DECODE_BIT_KHR;
@@ -42,21 +42,21 @@ int vk_transfer_family_find(VkPhysicalDevice physical) {
 bool vk_copier_open(gpu *g) {
     vk_copier *c = &g->copier;
     if (c->family < 0) return true;
-    vkGetDeviceQueue(g->device, (uint32_t)c->family, 0, &c->queue);
+    g->vk.GetDeviceQueue(g->device, (uint32_t)c->family, 0, &c->queue);
     VkSemaphoreTypeCreateInfo type = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO,
                                       .semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE};
     VkSemaphoreCreateInfo info = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO, .pNext = &type};
-    return vk_check(g, vkCreateSemaphore(g->device, &info, NULL, &c->timeline),
+    return vk_check(g, g->vk.CreateSemaphore(g->device, &info, NULL, &c->timeline),
                     "creating the timeline of copies");
 }
 
 void vk_copier_close(gpu *g) {
-    vkDestroySemaphore(g->device, g->copier.timeline, NULL);
+    g->vk.DestroySemaphore(g->device, g->copier.timeline, NULL);
 }
 
 static uint64_t copied(gpu *g) {
     uint64_t value = 0;
-    VkResult result = vkGetSemaphoreCounterValue(g->device, g->copier.timeline, &value);
+    VkResult result = g->vk.GetSemaphoreCounterValue(g->device, g->copier.timeline, &value);
     if (result == VK_ERROR_DEVICE_LOST) vk_lose(g, result);
     return result == VK_SUCCESS && value <= g->copier.submitted ? value : 0;
 }
@@ -67,7 +67,7 @@ static bool wait_copied(gpu *g, uint64_t serial) {
                                 .pSemaphores = &g->copier.timeline,
                                 .pValues = &serial};
     if (!vk_alive(g)) return false;
-    VkResult result = vkWaitSemaphores(g->device, &info, g->timeout);
+    VkResult result = g->vk.WaitSemaphores(g->device, &info, g->timeout);
     if (result == VK_TIMEOUT || result == VK_ERROR_DEVICE_LOST) return vk_lose(g, result);
     return vk_check(g, result, "waiting for copies to '%s'", g->info.name);
 }
@@ -78,7 +78,7 @@ static bool create_commands(gpu *g, gpu_transfer *t) {
     VkCommandPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
                                     .flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT,
                                     .queueFamilyIndex = (uint32_t)g->copier.family};
-    if (!vk_check(g, vkCreateCommandPool(g->device, &pool, NULL, &t->pool),
+    if (!vk_check(g, g->vk.CreateCommandPool(g->device, &pool, NULL, &t->pool),
                   "creating a command pool for copies")) {
         return false;
     }
@@ -86,7 +86,7 @@ static bool create_commands(gpu *g, gpu_transfer *t) {
                                         .commandPool = t->pool,
                                         .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
                                         .commandBufferCount = 1};
-    return vk_check(g, vkAllocateCommandBuffers(g->device, &info, &t->commands),
+    return vk_check(g, g->vk.AllocateCommandBuffers(g->device, &info, &t->commands),
                     "creating a command buffer for copies");
 }
 
@@ -102,7 +102,7 @@ gpu_transfer *gpu_transfer_create(gpu *g, uint64_t size) {
 void gpu_transfer_destroy(gpu *g, gpu_transfer *t) {
     if (!t) return;
     if (t->pool && t->serial > 0) wait_copied(g, t->serial);
-    vkDestroyCommandPool(g->device, t->pool, NULL);
+    g->vk.DestroyCommandPool(g->device, t->pool, NULL);
     gpu_buffer_destroy(g, t->buffer);
     mem_free(t->parts);
     mem_free(t);
@@ -135,14 +135,14 @@ static bool check_part(const gpu_transfer *t, const gpu_transfer_part *part) {
     return true;
 }
 
-static void copy_part(VkCommandBuffer commands, const gpu_transfer *t,
+static void copy_part(const gpu *g, VkCommandBuffer commands, const gpu_transfer *t,
                       const gpu_transfer_part *part) {
     VkBufferImageCopy region = {
         .bufferOffset = part->offset,
         .imageSubresource = {.aspectMask = part->image->aspect, .layerCount = 1},
         .imageExtent = {part->image->desc.width, part->image->desc.height, part->slices}};
-    vkCmdCopyBufferToImage(commands, t->buffer->handle, part->image->handle,
-                           VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
+    g->vk.CmdCopyBufferToImage(commands, t->buffer->handle, part->image->handle,
+                               VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
 }
 
 static VkImageMemoryBarrier2 barrier_of(const gpu_image *image) {
@@ -154,11 +154,12 @@ static VkImageMemoryBarrier2 barrier_of(const gpu_image *image) {
         .subresourceRange = {.aspectMask = image->aspect, .levelCount = 1, .layerCount = 1}};
 }
 
-static void record_barrier(VkCommandBuffer commands, const VkImageMemoryBarrier2 *barrier) {
+static void record_barrier(const gpu *g, VkCommandBuffer commands,
+                           const VkImageMemoryBarrier2 *barrier) {
     VkDependencyInfo info = {.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
                              .imageMemoryBarrierCount = 1,
                              .pImageMemoryBarriers = barrier};
-    vkCmdPipelineBarrier2(commands, &info);
+    g->vk.CmdPipelineBarrier2(commands, &info);
 }
 
 // Half of a barrier: the first queue hands the image over, the second takes it.
@@ -178,20 +179,20 @@ static void record_copy(const gpu *g, gpu_transfer *t, const gpu_transfer_part *
     begin.newLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
     end.srcStageMask = VK_PIPELINE_STAGE_2_COPY_BIT;
     end.srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
-    record_barrier(t->commands, &begin);
-    copy_part(t->commands, t, part);
-    record_barrier(t->commands, &end);
+    record_barrier(g, t->commands, &begin);
+    copy_part(g, t->commands, t, part);
+    record_barrier(g, t->commands, &end);
 }
 
 static VkResult record_copies(gpu *g, gpu_transfer *t) {
-    VkResult result = vkResetCommandPool(g->device, t->pool, 0);
+    VkResult result = g->vk.ResetCommandPool(g->device, t->pool, 0);
     if (result != VK_SUCCESS) return result;
     VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
                                       .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
-    result = vkBeginCommandBuffer(t->commands, &begin);
+    result = g->vk.BeginCommandBuffer(t->commands, &begin);
     if (result != VK_SUCCESS) return result;
     for (size_t i = 0; i < t->count; i++) record_copy(g, t, &t->parts[i]);
-    return vkEndCommandBuffer(t->commands);
+    return g->vk.EndCommandBuffer(t->commands);
 }
 
 static bool submit_copies(gpu *g, gpu_transfer *t) {
@@ -213,7 +214,8 @@ static bool submit_copies(gpu *g, gpu_transfer *t) {
                           .pCommandBufferInfos = &commands,
                           .signalSemaphoreInfoCount = 1,
                           .pSignalSemaphoreInfos = &signal};
-    if (result == VK_SUCCESS) result = vkQueueSubmit2(g->copier.queue, 1, &info, VK_NULL_HANDLE);
+    if (result == VK_SUCCESS)
+        result = g->vk.QueueSubmit2(g->copier.queue, 1, &info, VK_NULL_HANDLE);
     if (result == VK_ERROR_DEVICE_LOST) return vk_lose(g, result);
     if (!vk_check(g, result, "submitting copies to '%s'", g->info.name)) return false;
     t->serial = ++g->copier.submitted;
@@ -226,7 +228,7 @@ static bool record_in_order(gpu *g, gpu_transfer *t) {
     vk_uses_begin(g);
     for (size_t i = 0; i < t->count; i++) vk_use_image(g, t->parts[i].image, 0, 1, vk_image_to);
     vk_uses_flush(g, commands);
-    for (size_t i = 0; i < t->count; i++) copy_part(commands, t, &t->parts[i]);
+    for (size_t i = 0; i < t->count; i++) copy_part(g, commands, t, &t->parts[i]);
     t->serial = atomic_load(&g->open_serial);
     return true;
 }
@@ -257,7 +259,7 @@ bool gpu_transfer_finish(gpu *g, gpu_transfer *t) {
         barrier.srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT; // where submissions wait
         barrier.dstStageMask = readers;
         barrier.dstAccessMask = VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
-        record_barrier(commands, &barrier);
+        record_barrier(g, commands, &barrier);
         t->parts[i].image->tracked[0].state =
             (hazard_state){.write_stages = readers,
                            .visible_stages = readers,

@@ -93,8 +93,8 @@ static bool copy_rows(gpu *g, gpu_image *image, uint32_t mip, const VkOffset3D *
             .imageSubresource = {.aspectMask = image->aspect, .mipLevel = mip, .layerCount = 1},
             .imageOffset = *at,
             .imageExtent = *extent};
-        vkCmdCopyBufferToImage(commands, p.buffer->handle, image->handle,
-                               VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
+        g->vk.CmdCopyBufferToImage(commands, p.buffer->handle, image->handle,
+                                   VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
     }
     piece_drop(g, &p);
     return commands != VK_NULL_HANDLE;
@@ -147,7 +147,7 @@ static bool copy_bytes(gpu *g, gpu_buffer *buffer, uint64_t offset, const void *
     VkCommandBuffer commands = vk_commands(g);
     if (commands) {
         VkBufferCopy region = {.srcOffset = p.offset, .dstOffset = offset, .size = size};
-        vkCmdCopyBuffer(commands, p.buffer->handle, buffer->handle, 1, &region);
+        g->vk.CmdCopyBuffer(commands, p.buffer->handle, buffer->handle, 1, &region);
     }
     piece_drop(g, &p);
     return commands != VK_NULL_HANDLE;

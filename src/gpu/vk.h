@@ -8,12 +8,12 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "gpu/allocator.h"
+#include "gpu/calls.h"
 #include "gpu/gpu.h"
 #include "gpu/hazard.h"
 #include "gpu/profile.h"
 #include <pthread.h>
 #include <stdatomic.h>
-#include <vulkan/vulkan.h>
 
 enum {
     VK_MAX_MIPS = 16,
@@ -32,11 +32,26 @@ typedef struct vk_instance {
     bool validating, labels;
 } vk_instance;
 
-// Counts messages in `*messages`, which must outlive the instance; may be NULL without validation.
-// `window` may be NULL.
-bool vk_instance_create(vk_instance *out, bool validate, const gpu_window *window,
+// Finds the calls of an instance, too. Counts messages in `*messages`, which must outlive the
+// instance; may be NULL without validation. `window` may be NULL.
+bool vk_instance_create(vk_instance *out, vk_calls *vk, bool validate, const gpu_window *window,
                         _Atomic uint64_t *messages);
-void vk_instance_destroy(vk_instance *instance);
+void vk_instance_destroy(vk_instance *instance, const vk_calls *vk);
+
+// Features that roil requires and those it takes when they are there (features.c lists them).
+typedef struct vk_features {
+    VkPhysicalDeviceFeatures2 core;
+    VkPhysicalDeviceVulkan11Features v11;
+    VkPhysicalDeviceVulkan12Features v12;
+    VkPhysicalDeviceVulkan13Features v13;
+} vk_features;
+void vk_features_chain(vk_features *f); // its parts to each other
+void vk_features_read(const vk_calls *vk, VkPhysicalDevice physical, vk_features *out);
+void vk_features_choose(const vk_features *there, vk_features *out); // what a device is made with
+void vk_features_of_host(const void *chain, vk_features *out);       // as far as roil knows them
+// The next feature that should be enabled and is not: needed, or wanted and there. `*at`, which
+// begins with 0, counts. NULL: none.
+const char *vk_features_missing(const vk_features *there, const vk_features *enabled, size_t *at);
 
 typedef struct vk_choice { // a device as found; real GPUs first
     VkPhysicalDevice physical;
@@ -46,25 +61,20 @@ typedef struct vk_choice { // a device as found; real GPUs first
 } vk_choice;
 // At most VK_MAX_DEVICES; -1 with a message when there is none. With a surface, a device that
 // cannot present to it is not usable.
-int vk_choices_find(VkInstance instance, VkSurfaceKHR surface, vk_choice *out);
+int vk_choices_find(const vk_calls *vk, VkInstance instance, VkSurfaceKHR surface, vk_choice *out);
 const vk_choice *vk_choice_pick(const vk_choice *choices, int count, const char *device);
 // Graphics and compute, and presenting when there is a surface. -1: none.
-int vk_queue_family_find(VkPhysicalDevice physical, VkSurfaceKHR surface);
+int vk_queue_family_find(const vk_calls *vk, VkPhysicalDevice physical, VkSurfaceKHR surface);
+// Describes a device whose `features` are enabled, and push descriptors, where `pushes`.
+void vk_choice_describe(const vk_calls *vk, VkPhysicalDevice physical, VkSurfaceKHR surface,
+                        const vk_features *features, bool pushes, vk_choice *out);
+bool vk_can_push(const vk_calls *vk, VkPhysicalDevice physical);
 
 gpu_profile vk_profile_find(const gpu_info *info, VkDriverId driver, const char *driver_info,
                             const gpu_limits *limits);
 bool vk_small_device_wanted(void); // by the environment
 // Its limits are at most those of a small device.
 void vk_profile_make_small(gpu_profile *p);
-
-// Features that roil requires and those it takes when they are there (device.c lists them).
-typedef struct vk_features {
-    VkPhysicalDeviceFeatures2 core;
-    VkPhysicalDeviceVulkan11Features v11;
-    VkPhysicalDeviceVulkan12Features v12;
-    VkPhysicalDeviceVulkan13Features v13;
-} vk_features;
-void vk_features_read(VkPhysicalDevice physical, vk_features *out);
 
 // True for VK_SUCCESS; else false with "what: why", and notes a lost device.
 bool vk_check(gpu *g, VkResult result, const char *what, ...) PRINTF_LIKE(3, 4);
@@ -133,6 +143,7 @@ struct gpu_image {
     VkImageView all;               // every level
     VkImageView mips[VK_MAX_MIPS]; // one level each
     VkImageAspectFlags aspect;
+    bool borrowed; // a host's: only the views are ours
     vk_memory memory;
     vk_tracked tracked[VK_MAX_MIPS];
 };
@@ -220,6 +231,7 @@ typedef struct vk_batch {
     vk_sets sets;             // that the commands use
     uint64_t serial;          // of its last submission
     VkSemaphore wait, signal; // of the next one, beside the timeline; NULL: none. Transfers wait
+    bool syncs;               // the next one waits for and signals what the host asked for
 } vk_batch;
 
 bool vk_batch_create(gpu *g, vk_batch *out);
@@ -326,7 +338,8 @@ typedef struct vk_copier {
     uint64_t wait;      // the next submission to the other queue waits for this; 0: for nothing
 } vk_copier;
 
-int vk_transfer_family_find(VkPhysicalDevice physical); // -1: none
+// -1: none.
+int vk_transfer_family_find(const vk_calls *vk, VkPhysicalDevice physical);
 bool vk_copier_open(gpu *g);
 void vk_copier_close(gpu *g); // the device is idle
 
@@ -364,11 +377,28 @@ bool vk_window_revive(gpu *g);
 VkResult vk_swapchain_fit(gpu *g, VkExtent2D size);
 bool vk_present(gpu *g); // hands the image of the submitted frame to the window, if it shows one
 
+// ---- a host's device --------------------------------------------------------------------------
+
+typedef struct vk_syncs { // of the next frame, with the host
+    gpu_semaphore waits[GPU_MAX_SYNC], signals[GPU_MAX_SYNC];
+    uint32_t wait_count, signal_count;
+} vk_syncs;
+
+// Takes over what the host gives: finds the calls, and describes its device. False with a message.
+bool vk_host_open(gpu *g, const gpu_host *host, vk_choice *out);
+// Moves the frame's semaphores into a submission.
+void vk_host_add_syncs(gpu *g, VkSemaphoreSubmitInfo *waits, uint32_t *wait_count,
+                       VkSemaphoreSubmitInfo *signals, uint32_t *signal_count);
+VkResult vk_host_submit(gpu *g, const VkSubmitInfo2 *info); // under the host's lock
+
 // ---- the device -------------------------------------------------------------------------------
 
 struct gpu {
     gpu_info info;
-    vk_instance instance;
+    vk_calls vk;
+    vk_instance instance; // no handle: the host's
+    gpu_host host;        // device NULL: there is none
+    vk_syncs syncs;
     _Atomic uint64_t messages;
     atomic_bool lost;
     atomic_bool loss_written; // `loss` is written
@@ -392,6 +422,7 @@ struct gpu {
     VkPhysicalDeviceMemoryProperties heaps;
     VkFormatFeatureFlags format_features[GPU_FORMAT_COUNT];
     gpu_profile profile;
+    bool draws_many;                                // commands in buffers, at once
     PFN_vkCmdPushDescriptorSetKHR push_descriptors; // NULL: sets of the batch are bound
     PFN_vkCmdBeginDebugUtilsLabelEXT begin_label;
     PFN_vkCmdEndDebugUtilsLabelEXT end_label;

@@ -62,7 +62,7 @@ static char *joined(const char *folder, const char *name) {
 
 // The device that can show the window comes first, and the effects' is the same one.
 static bool open_device(roil *r, const roil_desc *desc) {
-    const roil_window_desc *window = desc->window;
+    const roil_window_desc *window = desc->vulkan ? NULL : desc->window;
     gpu_window shown = {0};
     if (window)
         shown = (gpu_window){.extensions = window->extensions,
@@ -77,6 +77,10 @@ static bool open_device(roil *r, const roil_desc *desc) {
                     .timeout = desc->timeout,
                     .waiting = desc->waiting,
                     .user = desc->user};
+    if (desc->vulkan) {
+        r->shown = r->device = roil_open_host(&how, desc->vulkan);
+        return r->device != NULL;
+    }
     r->shown = r->device = gpu_create(&how);
     if (!r->device || !r->never_waits || !gpu_get_profile(r->device)->shows_apart)
         return r->device != NULL;

@@ -80,6 +80,8 @@ char *roil_describe(roil_effect *e, const roil_making *how);
 roil_made *roil_parse_made(const char *line, const char *name); // `name` is for messages
 #define ROIL_RECIPE_BEGIN "{\"roil-recipe\":1,"
 
+// Opens the host's device. NULL with a message. (roil/vulkan.c)
+gpu *roil_open_host(const gpu_desc *how, const roil_vulkan *vulkan);
 time_limit roil_time_limit(const roil *r); // a new limit for a load
 // What an effect is created with, by the options of `r`; the other members are zero.
 effect_desc roil_effect_desc(const roil *r, const char *file, const roil_assets *assets,

@@ -368,3 +368,21 @@ CALL(vkGetQueryPoolResults, LOSES_DEVICE,
      (device, pool, first, count, size, out, stride, flags))
 CALL(vkGetPipelineCacheData, LACKS,
      (VkDevice device, VkPipelineCache cache, size_t *size, void *out), (device, cache, size, out))
+
+// Calls are asked for by name: those above stand in for the loader's there, too.
+static PFN_vkVoidFunction stand_in(PFN_vkVoidFunction found, const char *name) {
+    PFN_vkVoidFunction own = found ? (PFN_vkVoidFunction)dlsym(RTLD_DEFAULT, name) : NULL;
+    return own ? own : found;
+}
+
+VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL vkGetInstanceProcAddr(VkInstance instance,
+                                                               const char *name) {
+    PFN_vkGetInstanceProcAddr real =
+        (PFN_vkGetInstanceProcAddr)dlsym(RTLD_NEXT, "vkGetInstanceProcAddr");
+    return stand_in(real(instance, name), name);
+}
+
+VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL vkGetDeviceProcAddr(VkDevice device, const char *name) {
+    PFN_vkGetDeviceProcAddr real = (PFN_vkGetDeviceProcAddr)dlsym(RTLD_NEXT, "vkGetDeviceProcAddr");
+    return stand_in(real(device, name), name);
+}

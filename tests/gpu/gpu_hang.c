@@ -182,9 +182,9 @@ static void submit_between_frames(stuck *s, uint32_t groups) {
     vk_uses_begin(s->g);
     need(vk_bindings_use(s->g, s->pipeline, &binding, 1));
     vk_uses_flush(s->g, commands);
-    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, s->pipeline->built->handle);
+    s->g->vk.CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, s->pipeline->built->handle);
     need(vk_bindings_bind(s->g, commands, s->pipeline, &binding, 1));
-    vkCmdDispatch(commands, groups, groups, groups);
+    s->g->vk.CmdDispatch(commands, groups, groups, groups);
     need(vk_flush(s->g));
 }
 

@@ -11,7 +11,7 @@ LEVEL = {layer: level for level, layers in enumerate(LEVELS) for layer in layers
 
 # Foreign header -> where it may be included: a layer (all its files), layers, or a file.
 HOMES = [
-    (r"vulkan/|vk_|volk\.h|vulkan", "gpu/"),
+    (r"vulkan/|vk_|volk\.h|vulkan", ("gpu/", "roil_vulkan.h")),
     (r"spirv_cross/(spirv|GLSL\.std\.450)\.h", ("shader/", "gpu/")),
     (r"glslang/|SPIRV/|spirv_cross/(?!spirv\.h|GLSL\.std)|spirv-cross|spirv(?!_cross/)", "shader/"),
     (r"(lua|lauxlib|lualib|luaconf)\.h(pp)?$|lua5\.4/", "script/"),
@@ -28,7 +28,7 @@ HOMES = [
 ]
 CPP = ["src/media/vdb.cpp", "src/media/vdb_blocks.cpp", "src/media/vdb_write.cpp",
        "src/media/optical/optical_flow.cpp", "src/ui/ui.cpp", "src/ui/ui_canvas.cpp", "src/ui/ui_widgets.cpp"]
-PUBLIC = ("roil.h", "roil_edits.h", "roil_export.h", "roil_graph.h", "roil_slices.h", "roil_space.h")  # of the layer roil
+PUBLIC = ("roil.h", "roil_edits.h", "roil_export.h", "roil_graph.h", "roil_slices.h", "roil_space.h", "roil_vulkan.h")  # of the layer roil
 INCLUDE = re.compile(r'^\s*#\s*(?:include|import)\b\s*(?:"([^"]*)"|<([^>]*)>|(.*))')
 
 
