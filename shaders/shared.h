@@ -38,6 +38,10 @@ struct frame_block {
     SHARED_VEC4 eye;   // xyz: metres; w: by how much an orthographic camera stands behind its
                        // place (m), 0 in perspective
     SHARED_VEC4 lens;  // tan(half width), tan(half height), near, far (metres)
+    SHARED_VEC4 shift; // of a host's camera: xy: by how much what lies straight ahead is seen right
+                       // of the middle of the picture and above it, in halves of it; zw: by how much
+                       // its jitter has moved the picture since the last frame, to the right and
+                       // down, in parts of it
     SHARED_VEC4 time;  // seconds, seconds since the last frame, number of the frame shown, 0
     SHARED_UVEC4 size; // output width, height, frames drawn so far (for noise), seed
     SHARED_VEC4 sun_direction; // xyz: towards the sun, unit; w: angular radius of the moon that is

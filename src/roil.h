@@ -699,5 +699,6 @@ void roil_free(void *text); // NULL is allowed
 #include "roil_edits.h"  // what was set, written into the script
 #include "roil_export.h" // volumes and sheets for other programs
 #include "roil_graph.h"  // passes and images, shown
+#include "roil_host.h"   // an effect in the picture of a host's renderer
 #include "roil_slices.h" // flows in slices, shown and changed
 #include "roil_space.h"  // where things are, and what moves them

@@ -61,6 +61,47 @@ struct roil_vulkan {               // for roil_desc.vulkan; only read by roil_cr
     void *user; // passed to both
 };
 
+// ---- frames -----------------------------------------------------------------------------------
+
+typedef struct roil_vulkan_image { // of the host: two-dimensional, of one level and one layer
+    VkImage image;                 // VK_NULL_HANDLE: none
+    VkFormat format;
+    uint32_t width, height;
+    // The layouts in which roil finds the image and in which it leaves it. Its content need not be
+    // kept where an image is written: `before` may be VK_IMAGE_LAYOUT_UNDEFINED there.
+    VkImageLayout before, after;
+} roil_vulkan_image;
+
+typedef struct roil_vulkan_semaphore {
+    VkSemaphore semaphore;
+    uint64_t value; // of a timeline; of a binary semaphore it is ignored
+} roil_vulkan_semaphore;
+
+enum { ROIL_VULKAN_SEMAPHORES = 8 };
+typedef struct roil_vulkan_frame {
+    // Depths of the host's scene, as roil_view.projection makes them, of any format of depths, with
+    // VK_IMAGE_USAGE_SAMPLED_BIT. Its size may be another than that of the layer.
+    roil_vulkan_image depth;
+    // Where the images of the layer go, by roil_layer_image, with VK_IMAGE_USAGE_TRANSFER_DST_BIT.
+    // Their sizes and formats may be others than those of the layer, as far as vkCmdBlitImage
+    // converts them.
+    roil_vulkan_image images[ROIL_LAYER_IMAGES];
+    // The frame waits for these before it reads or writes an image, and signals those when it is
+    // done: at most ROIL_VULKAN_SEMAPHORES of each.
+    const roil_vulkan_semaphore *waits, *signals;
+    uint32_t wait_count, signal_count;
+} roil_vulkan_frame;
+// Renders one frame of a layer, as roil_render does, into the host's images, and returns once it is
+// submitted. Several layers of a roil are drawn by one call each, one behind the other on the one
+// queue. All images belong to the queue's family, to which the host gives them first where another
+// one has them. They must live until the frame has finished, which the semaphores tell.
+//
+// Where it fails, the images still come into the layouts `after`, with undefined content, and the
+// semaphores are waited for and signalled, unless an argument is refused or the device is lost.
+bool roil_vulkan_render(roil_effect *e, double frame, const roil_vulkan_frame *f);
+// The same for a host whose steps are uneven, as roil_advance.
+bool roil_vulkan_advance(roil_effect *e, double frame, const roil_vulkan_frame *f);
+
 #ifdef __cplusplus
 }
 #endif

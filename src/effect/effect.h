@@ -6,6 +6,7 @@
 #pragma once
 #include "base/content_cache.h"
 #include "pass/pass.h"
+#include "scene/view.h"
 
 typedef struct effect effect;
 struct effect_happening; // events.h
@@ -178,6 +179,35 @@ bool effect_add_sheet(effect *e, const effect_sheet_desc *desc, effect_sheet *ou
 // Whether the medium of that march (NULL: the first) is the same again after so many seconds, by
 // what it is made of (field_repeats).
 bool effect_repeats(effect *e, const char *source, double seconds, strbuf *why);
+
+// ---- layers: the medium of a march as a part of a host's picture -------------------------------
+
+enum {                          // images of a layer
+    EFFECT_LAYER_COLOR,         // premultiplied radiance, and opacity
+    EFFECT_LAYER_TRANSMITTANCE, // by colour
+    EFFECT_LAYER_DEPTH,         // m, where the opacity is on average
+    EFFECT_LAYER_MOTION,        // of that place, since the frame before, in parts of the picture
+    EFFECT_LAYER_IMAGES
+};
+typedef struct effect_layer {
+    graph_image images[EFFECT_LAYER_IMAGES]; // the caller must keep those that it wants
+    bool moves; // the medium has a motion of its own, which the image has besides the camera's
+} effect_layer;
+// Adds passes that see the medium of a march (`source` NULL: the first) alone, in front of the
+// depths of effect_give_depth. Call it as effect_add_volume. `motion`: the image is wanted.
+bool effect_add_layer(effect *e, const char *source, bool motion, effect_layer *out);
+// From the next frame on: the camera (NULL: the script's own). False with a message.
+bool effect_set_view(effect *e, const scene_view *view);
+bool effect_has_view(const effect *e); // one that was set
+// The sun and the lights, instead of the script's, at most as many as it declares. 0: the script's.
+bool effect_set_lights(effect *e, const struct light_entry *lights, size_t count);
+// The depth buffer of the host, which effect_set_view's projection made, for the frame at work;
+// NULL: there is none.
+void effect_give_depth(effect *e, gpu_image *depth);
+// Calls that are made in each frame that is drawn, on the device, before all else and after it:
+// `done` is false when something failed. Both or none.
+void effect_around_frame(effect *e, bool (*begin)(void *user), bool (*end)(void *user, bool done),
+                         void *user);
 
 // Makes the effect draw only kept images and no pictures. Call it before the effect is built.
 void effect_skip_pictures(effect *e);

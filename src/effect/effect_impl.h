@@ -109,6 +109,24 @@ bool events_control_set(effect *e, control *c, const char *text);
 void events_control_reset(effect *e);
 void events_control_print(const effect *e, strbuf *out);
 
+// sheet.c, for layer.c too. Of the march that is called so, or the first; NULL with a message.
+pass *effect_find_march(effect *e, const char *label);
+const field *effect_find_velocity(effect *e, const pass *march); // of its medium; NULL: not known
+// Gives a pass the images of light that a march has. False with a message.
+bool effect_take_light(const pass *march, pass *maps);
+// layer.c: as the scene says, or a host.
+bool effect_fill_frame(effect *e, struct frame_block *out);
+bool effect_fill_lights(effect *e, struct light_block *out);
+
+typedef struct effect_given { // by a host
+    bool has_view, has_lights;
+    scene_view view;
+    struct light_block lights;
+    bool (*begin)(void *user);
+    bool (*end)(void *user, bool done);
+    void *user;
+} effect_given;
+
 struct effect {
     arena memory;
     gpu *device;
@@ -172,10 +190,12 @@ struct effect {
     double partly; // ... and some of the steps of this frame were done; NAN: of none
     bool (*progress)(void *user, double done, double whole); // effect_on_progress
     void *progress_user;
-    shared_mat4 clip, last_clip; // world to clip of the frame being recorded, of the one before
-    bool only_simulates;         // effect_only_simulate
-    uint32_t in_a_row;           // frames before the last one that histories tell of
-    bool has_last;               // there is one before, of which histories tell
+    effect_given given;
+    float jitter[2], last_jitter[2]; // of a host's camera, parts of the picture
+    shared_mat4 clip, last_clip;     // world to clip of the frame being recorded, of the one before
+    bool only_simulates;             // effect_only_simulate
+    uint32_t in_a_row;               // frames before the last one that histories tell of
+    bool has_last;                   // there is one before, of which histories tell
     bool compiled, allocated;
     uint32_t reference; // effect_desc
     bool never_waits;   // effect_desc

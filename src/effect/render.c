@@ -243,11 +243,13 @@ bool effect_evaluate(effect *e, double frame, gpu *device, bool again) {
     e->context.time = time;
     if (device && e->hooks.renew) e->hooks.renew(e->hooks.user);
     if (!again && (!update(e, frame) || !tick(e, frame))) return false;
-    if (!scene_fill_frame(&e->scene, &e->context, (float)e->width / (float)e->height, &e->frame) ||
-        !scene_fill_lights(&e->scene, &e->context, &e->lights))
-        return false;
+    if (!effect_fill_frame(e, &e->frame) || !effect_fill_lights(e, &e->lights)) return false;
     e->clip = e->frame.last;
     if (e->has_last) e->frame.last = e->last_clip;
+    for (int i = 0; i < 2; i++) {
+        e->jitter[i] = e->frame.shift.v[2 + i];
+        e->frame.shift.v[2 + i] -= e->has_last ? e->last_jitter[i] : e->jitter[i];
+    }
     e->frame.time = (shared_vec4){{(float)time, (float)dt, (float)frame, 0}};
     e->frame.size = (shared_uvec4){{e->width, e->height, (uint32_t)llrint(frame), e->seed}};
     if (!update_grids(e, device)) return false;
@@ -286,10 +288,13 @@ uint64_t effect_render(effect *e, double frame, bool jump) {
     uint64_t number = gpu_frame_begin(e->device);
     if (!number) return 0;
     e->host.fresh = !e->has_last;
-    bool done = effect_evaluate(e, frame, e->device, again) &&
+    bool done = (!e->given.begin || e->given.begin(e->given.user)) &&
+                effect_evaluate(e, frame, e->device, again) &&
                 scene_bvh_update(e->host.bvh, e->device, &e->context) &&
                 (e->only_simulates ? graph_execute_simulation(e->graph, e->device)
                                    : graph_execute(e->graph, e->device));
+    if (e->given.end && !e->given.end(e->given.user, done)) done = false;
+    effect_give_depth(e, NULL);
     if (!gpu_frame_end(e->device)) done = false;
     if (!done) { // what it may have left in a history is of no frame
         forget(e);
@@ -299,6 +304,7 @@ uint64_t effect_render(effect *e, double frame, bool jump) {
     e->in_a_row = e->has_last ? e->in_a_row + 1 : 0;
     e->has_last = true;
     e->last_clip = e->clip;
+    memcpy(e->last_jitter, e->jitter, sizeof e->jitter);
     e->last_frame = frame;
     e->rendered_at = clock_seconds();
     return number;
@@ -380,5 +386,6 @@ bool effect_adopt(effect *e, effect *from, uint32_t width, uint32_t height) {
     e->updated = from->updated;
     e->has_last = from->has_last;
     e->last_clip = from->last_clip;
+    memcpy(e->last_jitter, from->last_jitter, sizeof e->last_jitter);
     return true;
 }

@@ -12,7 +12,7 @@ static const field *field_of(const pass *p, const char *name) {
     return pass_find_key(p, name, &index) == PASS_FIELD ? pass_get_field(p, index) : NULL;
 }
 
-static pass *find_march(effect *e, const char *label) {
+pass *effect_find_march(effect *e, const char *label) {
     strbuf all = {0};
     for (size_t i = 0; i < e->pass_count; i++) {
         pass *p = e->passes[i];
@@ -27,7 +27,7 @@ static pass *find_march(effect *e, const char *label) {
         err_set("%s: no pass march is called '%s'; there are: %s", e->file, label,
                 strbuf_text(&all));
     else
-        err_set("%s: no pass march in it, whose medium a sheet could show", e->file);
+        err_set("%s: no pass march in it, whose medium could be shown", e->file);
     strbuf_free(&all);
     return NULL;
 }
@@ -56,8 +56,12 @@ static bool give_temperature(effect *e, const pass *march, pass *maps) {
                          e->file, pass_label(march));
 }
 
+const field *effect_find_velocity(effect *e, const pass *march) {
+    return field_velocity(&e->memory, field_of(march, "density"));
+}
+
 static bool give_velocity(effect *e, const pass *march, pass *maps, bool *moves) {
-    const field *found = field_velocity(&e->memory, field_of(march, "density"));
+    const field *found = effect_find_velocity(e, march);
     *moves = found;
     return !found || pass_set_field(maps, "velocity", found);
 }
@@ -85,7 +89,7 @@ static bool add_rig(effect *e, pass *march, pass *maps, const char *rig, const c
 }
 
 // The march's look, without what stands before it. Its light is that of the scene.
-static bool take_light(pass *march, pass *maps) {
+bool effect_take_light(const pass *march, pass *maps) {
     static const char *const inputs[] = {"lights", "shadow", "glow"};
     for (size_t i = 0; i < COUNT_OF(inputs); i++) {
         graph_image image = pass_input(march, inputs[i]);
@@ -123,7 +127,7 @@ bool effect_add_sheet(effect *e, const effect_sheet_desc *desc, effect_sheet *ou
     };
     const bool *wanted = desc->wanted;
     *out = (effect_sheet){0};
-    pass *march = find_march(e, desc->source), *maps = NULL;
+    pass *march = effect_find_march(e, desc->source), *maps = NULL;
     if (!march) return false;
     out->source = pass_label(march);
     if (!effect_medium_box(e, field_of(march, "density"), desc->first, desc->last, &out->box))
@@ -131,7 +135,7 @@ bool effect_add_sheet(effect *e, const effect_sheet_desc *desc, effect_sheet *ou
     maps = effect_add_pass(e, "maps", NULL, NULL);
     if (!maps) return false;
     pass_add_source(maps, march);
-    if (!take_light(march, maps) ||
+    if (!effect_take_light(march, maps) ||
         (wanted[EFFECT_MAP_MOTION] && !give_velocity(e, march, maps, &out->moves)) ||
         (desc->temperature && !give_temperature(e, march, maps)) ||
         (wanted[EFFECT_MAP_NORMAL] && !pass_set_option(maps, "normals", "on")) ||
@@ -148,7 +152,7 @@ bool effect_add_sheet(effect *e, const effect_sheet_desc *desc, effect_sheet *ou
 }
 
 bool effect_repeats(effect *e, const char *source, double seconds, strbuf *why) {
-    const pass *p = find_march(e, source);
+    const pass *p = effect_find_march(e, source);
     const shader_interface *face = p ? pass_interface(p) : NULL;
     const value_desc *declared;
     for (size_t i = 0; face && i < face->field_count; i++) {

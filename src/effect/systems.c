@@ -188,14 +188,14 @@ const effect_event *effect_events(const effect *e, size_t *count) {
 // ---- places -----------------------------------------------------------------------------------
 
 static bool camera(effect *e, struct frame_block *out) {
-    float aspect = e->width && e->height ? (float)e->width / (float)e->height : 1;
-    return scene_fill_frame(&e->scene, &e->context, aspect, out);
+    return effect_fill_frame(e, out);
 }
 
 bool effect_camera_ray(effect *e, float x, float y, float origin[3], float direction[3]) {
     struct frame_block f;
     if (!camera(e, &f)) return false;
-    vec3 way = {(2 * x - 1) * f.lens.v[0], (1 - 2 * y) * f.lens.v[1], -1};
+    vec3 way = {(2 * x - 1 - f.shift.v[0]) * f.lens.v[0], (1 - 2 * y - f.shift.v[1]) * f.lens.v[1],
+                -1};
     mat4 to_world;
     memcpy(to_world, &f.view_inverse, sizeof to_world);
     glm_mat4_mulv3(to_world, way, 0, direction);
@@ -210,8 +210,8 @@ static bool picture_place(const struct frame_block *f, const float point[3], flo
     vec3 p;
     memcpy(view, &f->view, sizeof view);
     glm_mat4_mulv3(view, (float *)(uintptr_t)point, 1, p);
-    *x = 0.5f + 0.5f * p[0] / (-p[2] * f->lens.v[0]);
-    *y = 0.5f - 0.5f * p[1] / (-p[2] * f->lens.v[1]);
+    *x = 0.5f + 0.5f * (p[0] / (-p[2] * f->lens.v[0]) + f->shift.v[0]);
+    *y = 0.5f - 0.5f * (p[1] / (-p[2] * f->lens.v[1]) + f->shift.v[1]);
     return p[2] < 0 && isfinite(*x) && isfinite(*y);
 }
 

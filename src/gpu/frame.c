@@ -24,7 +24,6 @@ uint64_t gpu_frame_begin(gpu *g) {
     g->frame = frame;
     g->in_pass = false;
     g->window.shows = false;
-    frame->batch.syncs = true;
     frame->number = number;
     frame->uniforms.chunk = 0;
     frame->uniforms.offset = 0;

@@ -372,7 +372,7 @@ typedef struct gpu_semaphore {
     uint64_t handle; // VkSemaphore
     uint64_t value;  // of a timeline; of a binary one it does not count
 } gpu_semaphore;
-// The next frame waits for these before it begins, and signals those when all its work is done.
+// The open frame waits for these before it begins, and signals those when all its work is done.
 // False with a message: they are more than GPU_MAX_SYNC, with what was asked for before.
 bool gpu_frame_sync(gpu *g, const gpu_semaphore *waits, size_t wait_count,
                     const gpu_semaphore *signals, size_t signal_count);

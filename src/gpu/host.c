@@ -109,11 +109,13 @@ VkResult vk_host_submit(gpu *g, const VkSubmitInfo2 *info) {
 bool gpu_frame_sync(gpu *g, const gpu_semaphore *waits, size_t wait_count,
                     const gpu_semaphore *signals, size_t signal_count) {
     vk_syncs *s = &g->syncs;
+    if (!g->frame) return err_set("no frame is open for semaphores of a host");
     if (wait_count > GPU_MAX_SYNC - s->wait_count || signal_count > GPU_MAX_SYNC - s->signal_count)
         return err_set("%zu semaphores to wait for and %zu to signal; %d of each are accepted",
                        wait_count, signal_count, GPU_MAX_SYNC);
     for (size_t i = 0; i < wait_count; i++) s->waits[s->wait_count++] = waits[i];
     for (size_t i = 0; i < signal_count; i++) s->signals[s->signal_count++] = signals[i];
+    g->frame->batch.syncs = true;
     return true;
 }
 

@@ -379,7 +379,7 @@ bool vk_present(gpu *g); // hands the image of the submitted frame to the window
 
 // ---- a host's device --------------------------------------------------------------------------
 
-typedef struct vk_syncs { // of the next frame, with the host
+typedef struct vk_syncs { // of the open frame, with the host
     gpu_semaphore waits[GPU_MAX_SYNC], signals[GPU_MAX_SYNC];
     uint32_t wait_count, signal_count;
 } vk_syncs;

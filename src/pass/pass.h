@@ -31,6 +31,8 @@ typedef struct pass_host { // what all passes of one effect share
     struct scene_bvh *bvh;            // of all meshes; after pass_allocate
     struct pass_ranges *ranges;       // owned: of grids (pass/ranges.h)
     gpu_image *blue_noise;            // texture "BlueNoise" of lib/random.glsl
+    gpu_image *given_depth;           // a host's depth buffer, of this frame; NULL: there is none
+    float given_depths[2];            // by which its depths are metres: scene_lens.depths
     bool fresh;                       // histories begin with the frame being recorded
     bool ahead;       // the frame being recorded is not drawn: what simulates goes on alone
     bool hold;        // what simulates stays as it is

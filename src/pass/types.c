@@ -10,6 +10,7 @@ extern const pass_type bloom_type;
 extern const pass_type deposit_type;
 extern const pass_type forward_type;
 extern const pass_type geometry_type;
+extern const pass_type host_depth_type;
 extern const pass_type lbm_source_type;
 extern const pass_type lbm_templates_type;
 extern const pass_type lbm_type;
@@ -47,6 +48,12 @@ static const pass_type over_type = {
     .shader = "pass/picture/over.comp",
 };
 
+static const pass_type layer_type = {
+    .name = "layer",
+    .constructed = true,
+    .shader = "pass/host/layer.comp",
+};
+
 static const pass_type outline_type = {
     .name = "outline",
     .shader = "pass/picture/outline.comp",
@@ -78,6 +85,8 @@ static const pass_type *const types[] = {
     &march_type,
     &maps_type,
     &stack_type,
+    &host_depth_type,
+    &layer_type,
     &reference_type,
     &over_type,
     &outline_type,

@@ -79,11 +79,16 @@ typedef struct linear_image {
     size_t width, height;
 } linear_image;
 
-static linear_image expand_all(const raw_image *raw) {
-    size_t count = (size_t)raw->width * raw->height, texel = gpu_format_size(raw->format);
-    float *pixels = mem_alloc(count * 4 * sizeof *pixels);
+void roil_expand(const void *texels, gpu_format format, size_t count, float *out) {
+    size_t texel = gpu_format_size(format);
     for (size_t i = 0; i < count; i++)
-        expand_texel(raw->texels + i * texel, raw->format, pixels + i * 4);
+        expand_texel((const unsigned char *)texels + i * texel, format, out + i * 4);
+}
+
+static linear_image expand_all(const raw_image *raw) {
+    size_t count = (size_t)raw->width * raw->height;
+    float *pixels = mem_alloc(count * 4 * sizeof *pixels);
+    roil_expand(raw->texels, raw->format, count, pixels);
     return (linear_image){pixels, raw->width, raw->height};
 }
 

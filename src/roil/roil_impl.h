@@ -34,6 +34,8 @@ struct roil_effect {
     size_t kept_count, kept_capacity;
     template_file **templates; // that were read so far
     size_t template_count, template_capacity;
+    bool has_layer;
+    effect_layer layer;
     char inputs[33]; // hash of all files that it reads; "": not asked for yet
 };
 
@@ -47,6 +49,8 @@ void roil_add_lua_key(const char *name, strbuf *out); // "name = ", in brackets 
 graph_image roil_find_image(roil_effect *e, const char *name); // zero with a message
 // Reads an image of the last frame: four floats a pixel, to be freed. NULL with a message.
 float *roil_read_linear(roil_effect *e, graph_image image, uint32_t *width, uint32_t *height);
+// Converts texels of a format of the graph: four floats each. Missing channels are 0, and alpha 1.
+void roil_expand(const void *texels, gpu_format format, size_t count, float *out);
 float roil_srgb(float linear); // 0 to 1, encoded for a display
 // Tables from linear values to sRGB codes, indexed by the square root: entry i is the code of
 // (i / ROIL_SRGB_STEPS)^2. Values of the fine table have 8 fractional bits. The first call fills

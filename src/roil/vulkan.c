@@ -3,6 +3,7 @@
 #include "base/memory.h"
 #include "roil/roil_impl.h"
 #include "roil_vulkan.h"
+#include <string.h>
 
 static gpu_host host_of(const roil_vulkan *v) {
     return (gpu_host){.get_proc = (void (*(*)(void *, const char *))(void))v->get,
@@ -38,4 +39,134 @@ gpu *roil_open_host(const gpu_desc *how, const roil_vulkan *vulkan) {
     gpu_desc with = *how;
     with.host = &host;
     return gpu_create(&with);
+}
+
+// ---- frames -----------------------------------------------------------------------------------
+
+typedef struct handover { // what is at work in a frame
+    roil_effect *effect;
+    const roil_vulkan_frame *frame;
+    gpu_image *depth; // borrowed; NULL: none
+    bool returned;    // the images are
+} handover;
+
+static const char *const labels[ROIL_LAYER_IMAGES] = {
+    [ROIL_LAYER_COLOR] = "image for the colour",
+    [ROIL_LAYER_TRANSMITTANCE] = "image for the transmittance",
+    [ROIL_LAYER_DEPTH] = "image for the depth",
+    [ROIL_LAYER_MOTION] = "image for the motion",
+};
+
+static gpu_host_image image_of(const roil_vulkan_image *image, const char *label) {
+    return (gpu_host_image){.image = (uint64_t)(uintptr_t)image->image,
+                            .format = (int)image->format,
+                            .width = image->width,
+                            .height = image->height,
+                            .before = (int)image->before,
+                            .after = (int)image->after,
+                            .label = label};
+}
+
+static gpu_host_image depth_of(const roil_vulkan_frame *f) {
+    return image_of(&f->depth, "depth buffer");
+}
+
+static bool ask(const roil_effect *e, const roil_vulkan_frame *f) {
+    gpu_semaphore waits[ROIL_VULKAN_SEMAPHORES], signals[ROIL_VULKAN_SEMAPHORES];
+    for (uint32_t i = 0; i < f->wait_count; i++)
+        waits[i] = (gpu_semaphore){(uint64_t)(uintptr_t)f->waits[i].semaphore, f->waits[i].value};
+    for (uint32_t i = 0; i < f->signal_count; i++)
+        signals[i] =
+            (gpu_semaphore){(uint64_t)(uintptr_t)f->signals[i].semaphore, f->signals[i].value};
+    return gpu_frame_sync(e->owner->device, waits, f->wait_count, signals, f->signal_count);
+}
+
+static bool begin(void *user) {
+    handover *h = user;
+    const gpu_host_image from = depth_of(h->frame);
+    if (!ask(h->effect, h->frame)) return false;
+    if (!from.image) return true;
+    h->depth = gpu_image_borrow(h->effect->owner->device, &from);
+    effect_give_depth(h->effect->effect, h->depth);
+    return h->depth;
+}
+
+// Hands out the images, or only changes their layouts.
+static bool end(void *user, bool done) {
+    handover *h = user;
+    roil_effect *e = h->effect;
+    gpu *g = e->owner->device;
+    const gpu_host_image from = depth_of(h->frame);
+    for (int i = 0; i < ROIL_LAYER_IMAGES; i++) {
+        const gpu_host_image to = image_of(&h->frame->images[i], labels[i]);
+        gpu_image *image =
+            done ? graph_get_image(effect_graph(e->effect), e->layer.images[i]) : NULL;
+        if (to.image && !gpu_image_hand_out(g, image, &to)) done = false;
+    }
+    if (h->depth)
+        gpu_image_give_back(g, h->depth, &from);
+    else if (from.image)
+        gpu_image_hand_out(g, NULL, &from);
+    h->returned = true;
+    return done;
+}
+
+static bool check_image(const roil_vulkan_image *image, const char *label) {
+    if (!image->image) return true;
+    if (image->width < 1 || image->height < 1)
+        return err_set("the host's %s: its size is %u x %u", label, image->width, image->height);
+    return (image->after != VK_IMAGE_LAYOUT_UNDEFINED &&
+            image->after != VK_IMAGE_LAYOUT_PREINITIALIZED) ||
+           err_set("the host's %s: `after` is a layout that no image can be given", label);
+}
+
+static bool check_frame(const roil_effect *e, const roil_vulkan_frame *f) {
+    if (!e->has_layer) return err_set("the effect is no layer: roil_make_layer makes it one");
+    if (!e->width) return err_set("the effect is not prepared: roil_prepare comes first");
+    if (f->wait_count > ROIL_VULKAN_SEMAPHORES || f->signal_count > ROIL_VULKAN_SEMAPHORES)
+        return err_set("%u semaphores to wait for and %u to signal; accepted: up to %d of each",
+                       f->wait_count, f->signal_count, ROIL_VULKAN_SEMAPHORES);
+    if (!check_image(&f->depth, "depth buffer")) return false;
+    if (f->depth.image && f->depth.before == VK_IMAGE_LAYOUT_UNDEFINED)
+        return err_set("the host's depth buffer: in layout UNDEFINED it has no content");
+    if (f->depth.image && !effect_has_view(e->effect))
+        return err_set("the host's depth buffer: roil_set_view must say how it was projected");
+    for (int i = 0; i < ROIL_LAYER_IMAGES; i++) {
+        const bool there = graph_get_image(effect_graph(e->effect), e->layer.images[i]);
+        if (!check_image(&f->images[i], labels[i])) return false;
+        if (f->images[i].image && !there)
+            return err_set("the host's %s: roil_layer_desc did not ask for it", labels[i]);
+    }
+    return true;
+}
+
+// A frame that only gives back, where the effect's own did not come to it.
+static void give_back(handover *h) {
+    char *why = mem_copy(err_get(), strlen(err_get()) + 1);
+    if (gpu_frame_begin(h->effect->owner->device)) {
+        ask(h->effect, h->frame);
+        end(h, false);
+        gpu_frame_end(h->effect->owner->device);
+    }
+    err_set("%s", why);
+    mem_free(why);
+}
+
+static bool render(roil_effect *e, double frame, const roil_vulkan_frame *f,
+                   bool (*draw)(roil_effect *e, double frame)) {
+    handover h = {.effect = e, .frame = f};
+    if (!check_frame(e, f)) return false;
+    effect_around_frame(e->effect, begin, end, &h);
+    bool done = draw(e, frame);
+    effect_around_frame(e->effect, NULL, NULL, NULL);
+    if (!h.returned) give_back(&h);
+    return done;
+}
+
+bool roil_vulkan_render(roil_effect *e, double frame, const roil_vulkan_frame *f) {
+    return render(e, frame, f, roil_render);
+}
+
+bool roil_vulkan_advance(roil_effect *e, double frame, const roil_vulkan_frame *f) {
+    return render(e, frame, f, roil_advance);
 }

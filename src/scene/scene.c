@@ -122,6 +122,7 @@ static bool fill_camera(const scene_camera *c, const field_context *context, flo
     float half = tanf(glm_rad(fov) * 0.5f);
     out->eye = (shared_vec4){{eye[0], eye[1], eye[2], moved}};
     out->lens = (shared_vec4){{half * aspect, half, near, far}};
+    out->shift = (shared_vec4){0};
     return true;
 }
 

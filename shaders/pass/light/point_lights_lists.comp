@@ -89,7 +89,7 @@ bool volume_of(uvec2 tile, out tile_volume v) {
         bounds = vec2(min(bounds.x, row.x), max(bounds.y, row.y));
     }
     vec2 from = vec2(tile * POINT_LIGHTS_TILE) / vec2(width, height), to = from + float(POINT_LIGHTS_TILE) / vec2(width, height);
-    v.slopes = vec4(2.0 * vec2(from.x, to.x) - 1.0, 1.0 - 2.0 * vec2(to.y, from.y)) * frame.lens.xxyy;
+    v.slopes = (vec4(2.0 * vec2(from.x, to.x) - 1.0, 1.0 - 2.0 * vec2(to.y, from.y)) - frame.shift.xxyy) * frame.lens.xxyy;
     v.longer = sqrt(1.0 + v.slopes * v.slopes);
     vec4 near = v.slopes * bounds.x, far = v.slopes * bounds.y, least = min(near, far), most = max(near, far);
     v.low = vec3(least.xz, -bounds.y);

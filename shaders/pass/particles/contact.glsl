@@ -30,7 +30,7 @@ float contact_picture(vec3 p, out vec3 n) {
     vec3 c = (frame.view * vec4(p, 1.0)).xyz, ray;
     n = vec3(0.0);
     if (-c.z < frame.lens.z) return 1e9;
-    vec2 uv = 0.5 + vec2(0.5, -0.5) * c.xy / (-c.z * frame.lens.xy);
+    vec2 uv = frame_seen(c.xy, -c.z);
     if (any(lessThan(uv, vec2(0.0))) || any(greaterThanEqual(uv, vec2(1.0)))) return 1e9;
     ivec2 texel = ivec2(uv * vec2(textureSize(depth, 0)));
     float seen = contact_seen(texel, ray), gap = seen + c.z;

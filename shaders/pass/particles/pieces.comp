@@ -66,8 +66,7 @@ mat3 turn_of(particle p) {
 
 vec3 seen_at(vec3 p) {
     vec3 v = (frame.view * vec4(p, 1.0)).xyz;
-    vec2 screen = v.xy / (max(-v.z, 1e-6) * frame.lens.xy);
-    return vec3(picture * (0.5 + 0.5 * vec2(screen.x, -screen.y)), -v.z);
+    return vec3(picture * frame_seen(v.xy, max(-v.z, 1e-6)), -v.z);
 }
 
 triangle triangle_of(uint number) {

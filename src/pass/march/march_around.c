@@ -17,8 +17,8 @@ static bool project(const struct frame_block *f, const float at[3], float out[2]
         for (int k = 0; k < 3; k++) eye[i] += f->view.m[4 * k + i] * at[k];
     }
     if (!(eye[2] < -f->lens.v[2])) return false;
-    out[0] = 0.5f - 0.5f * eye[0] / (eye[2] * f->lens.v[0]);
-    out[1] = 0.5f + 0.5f * eye[1] / (eye[2] * f->lens.v[1]);
+    out[0] = 0.5f - 0.5f * (eye[0] / (eye[2] * f->lens.v[0]) - f->shift.v[0]);
+    out[1] = 0.5f + 0.5f * (eye[1] / (eye[2] * f->lens.v[1]) - f->shift.v[1]);
     return true;
 }
 

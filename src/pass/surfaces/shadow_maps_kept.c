@@ -28,6 +28,7 @@ static void add_camera(const pass *p, hash128 *sum) {
     const struct frame_block *frame = p->host->frame;
     add(sum, &frame->view, sizeof frame->view);
     add(sum, &frame->lens, sizeof frame->lens);
+    add(sum, &frame->shift, 2 * sizeof *frame->shift.v);
     add(sum, p->host->lights, sizeof *p->host->lights);
 }
 

@@ -34,7 +34,9 @@ static void set_axes(struct shadow_view *v, const vec3 right, const vec3 up, flo
 
 // The least sphere about the corners of that part of the camera's pyramid.
 static float bound(const struct frame_block *frame, float near, float far, vec3 centre) {
-    const float *across = frame->lens.v, *m = frame->view_inverse.m;
+    const float *m = frame->view_inverse.m;
+    const float across[2] = {frame->lens.v[0] * (1 + fabsf(frame->shift.v[0])),
+                             frame->lens.v[1] * (1 + fabsf(frame->shift.v[1]))};
     float k = across[0] * across[0] + across[1] * across[1];
     float deep = fminf(0.5f * (near + far) * (1 + k), far);
     for (int i = 0; i < 3; i++) centre[i] = frame->eye.v[i] - m[8 + i] * deep;

@@ -62,8 +62,7 @@ vec3 light_through(vec3 p, float chance) {
 
 vec3 place_seen(vec3 p) { // pixels, and depth in metres
     vec3 v = (frame.view * vec4(p, 1.0)).xyz;
-    vec2 screen = v.xy / (max(-v.z, 1e-6) * frame.lens.xy);
-    return vec3(picture * (0.5 + 0.5 * vec2(screen.x, -screen.y)), -v.z);
+    return vec3(picture * frame_seen(v.xy, max(-v.z, 1e-6)), -v.z);
 }
 
 // Where the streak begins: not before the particle's birth, and no nearer than the camera sees.

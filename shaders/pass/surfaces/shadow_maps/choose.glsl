@@ -14,8 +14,8 @@ float reach_of(light_entry e) {
 // Whether a sphere meets the camera's pyramid, or does so nearly.
 bool is_in_sight(vec3 centre, float radius) {
     vec3 seen = (frame.view * vec4(centre, 1.0)).xyz;
-    vec2 slack = radius * sqrt(1.0 + frame.lens.xy * frame.lens.xy);
-    return seen.z < radius && all(lessThan(abs(seen.xy) + seen.z * frame.lens.xy, slack));
+    vec2 across = frame_across(), slack = radius * sqrt(1.0 + across * across);
+    return seen.z < radius && all(lessThan(abs(seen.xy) + seen.z * across, slack));
 }
 
 // Light that would reach the camera, of one whose reach is in sight: the part of the picture that

@@ -1,0 +1,134 @@
+// An engine with a Vulkan device, a camera and a picture of its own, and two effects of roil in it:
+// one behind a wall and one before. It draws 60 frames and writes the last one:
+//
+//   engine FAR.lua NEAR.lua PICTURE.pfm
+//
+// engine_vulkan.h has what every engine has; all that concerns roil is here.
+#include "engine_vulkan.h"
+#include <roil_vulkan.h>
+
+static roil *r;
+static roil_effect *effects[EFFECTS];
+
+// The device is the engine's own, made with what roil asks for besides.
+static void open_roil(void) {
+    static roil_vulkan_needs needs;
+    if (!roil_vulkan_find_needs(vkGetInstanceProcAddr, instance, physical, &needs))
+        FAIL("%s", roil_error());
+    float priority = 1;
+    VkDeviceQueueCreateInfo queues = {.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
+                                      .queueCount = 1,
+                                      .pQueuePriorities = &priority};
+    VkDeviceCreateInfo info = {.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
+                               .pNext = &needs.features,
+                               .queueCreateInfoCount = 1,
+                               .pQueueCreateInfos = &queues,
+                               .enabledExtensionCount = needs.extension_count,
+                               .ppEnabledExtensionNames = needs.extensions};
+    VK(vkCreateDevice(physical, &info, NULL, &device));
+    vkGetDeviceQueue(device, 0, 0, &queue);
+    roil_vulkan vulkan = {.get = vkGetInstanceProcAddr,
+                          .instance = instance,
+                          .physical = physical,
+                          .device = device,
+                          .features = &needs.features,
+                          .extensions = needs.extensions,
+                          .extension_count = needs.extension_count};
+    r = roil_create(&(roil_desc){.vulkan = &vulkan, .memory = getenv("ENGINE_MEMORY")});
+    if (!r) FAIL("%s", roil_error());
+}
+
+static roil_effect *open_effect(const char *file) {
+    roil_effect *e = roil_load(r, file, NULL, 0);
+    if (!e || !roil_make_layer(e, NULL) || !roil_prepare(e, WIDTH, HEIGHT))
+        FAIL("%s", roil_error());
+    return e;
+}
+
+// ---- a frame ----------------------------------------------------------------------------------
+
+// A camera that circles the origin, as `orbit` of the effects does: z is up, y down in clip space,
+// and depths are reversed, with no end.
+static void place_camera(int frame, roil_view *view) {
+    const float radians = 3.14159265f / 180, yaw = (-90 + 0.25f * (float)frame) * radians,
+                pitch = 10 * radians;
+    const float away = 7, half = tanf(22.5f * radians), near = 0.1f;
+    const float back[3] = {cosf(pitch) * cosf(yaw), cosf(pitch) * sinf(yaw), sinf(pitch)};
+    const float right[3] = {-sinf(yaw), cosf(yaw), 0};
+    const float up[3] = {back[1] * right[2] - back[2] * right[1],
+                         back[2] * right[0] - back[0] * right[2],
+                         back[0] * right[1] - back[1] * right[0]};
+    memset(view, 0, sizeof *view);
+    for (int i = 0; i < 3; i++) {
+        view->view[4 * i] = right[i];
+        view->view[4 * i + 1] = up[i];
+        view->view[4 * i + 2] = back[i];
+    }
+    view->view[14] = -away;
+    view->view[15] = 1;
+    view->projection[0] = 1 / (half * WIDTH / HEIGHT);
+    view->projection[5] = -1 / half;
+    view->projection[11] = -1;
+    view->projection[14] = near;
+}
+
+// The engine's triangles, in the frame's picture and depths; `after` is signalled.
+static void draw_scene(const roil_view *view, uint64_t after) {
+    float clip[16] = {0};
+    for (int c = 0; c < 4; c++)
+        for (int row = 0; row < 4; row++)
+            for (int k = 0; k < 4; k++)
+                clip[4 * c + row] += view->projection[4 * k + row] * view->view[4 * c + k];
+    VkCommandBuffer commands = begin_commands(scene_commands);
+    relayout(commands, picture.image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL,
+             VK_IMAGE_ASPECT_COLOR_BIT);
+    relayout(commands, depth.image, VK_IMAGE_LAYOUT_UNDEFINED,
+             VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, VK_IMAGE_ASPECT_DEPTH_BIT);
+    draw_triangles(commands, clip);
+    submit(commands, 0, after);
+}
+
+// One effect into its two images, between the engine's own work.
+static void draw_effect(int i, int frame, const roil_view *view, uint64_t before, uint64_t after) {
+    const roil_vulkan_semaphore wait = {timeline, before}, signal = {timeline, after};
+    roil_vulkan_frame f = {.depth = {depth.image, deep, WIDTH, HEIGHT,
+                                     VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
+                                     VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL},
+                           .waits = &wait,
+                           .wait_count = 1,
+                           .signals = &signal,
+                           .signal_count = 1};
+    for (int k = 0; k < 2; k++) // ROIL_LAYER_COLOR, ROIL_LAYER_TRANSMITTANCE
+        f.images[k] = (roil_vulkan_image){
+            layers[i][k].image,     hdr, WIDTH, HEIGHT, VK_IMAGE_LAYOUT_UNDEFINED,
+            VK_IMAGE_LAYOUT_GENERAL};
+    if (!roil_set_view(effects[i], view) || !roil_vulkan_render(effects[i], frame, &f))
+        FAIL("%s", roil_error());
+}
+
+static void draw_frame(int frame) {
+    const uint64_t before =
+        4 * (uint64_t)frame; // the timeline's value at the end of the last frame
+    roil_view view;
+    place_camera(frame, &view);
+    wait_for(before);
+    draw_scene(&view, before + 1);
+    draw_effect(0, frame, &view, before + 1, before + 2);
+    draw_effect(1, frame, &view, before + 2, before + 3);
+    compose_layers(before + 3, before + 4);
+}
+
+int main(int count, char **arguments) {
+    if (count != 2 + EFFECTS) FAIL("FAR.lua NEAR.lua PICTURE.pfm are expected");
+    open_instance();
+    open_roil();
+    open_engine();
+    for (int i = 0; i < EFFECTS; i++) effects[i] = open_effect(arguments[1 + i]);
+    for (int frame = 0; frame < FRAMES; frame++) draw_frame(frame);
+    wait_for(4 * FRAMES);
+    write_picture(arguments[1 + EFFECTS]);
+    for (int i = 0; i < EFFECTS; i++) roil_unload(effects[i]);
+    roil_destroy(r);
+    close_engine();
+    return messages ? EXIT_FAILURE : EXIT_SUCCESS;
+}
