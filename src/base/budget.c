@@ -12,6 +12,7 @@
 
 struct budget_part {
     budget *owner;
+    budget_part *above; // of the owner's parent; NULL: there is none
     char label[BUDGET_LABEL];
     uint64_t bytes;
     budget_part *previous, *next;
@@ -21,6 +22,8 @@ struct budget {
     pthread_mutex_t lock;
     const char *name;
     uint64_t total, sum, lent;
+    budget *parent;      // NULL: none
+    const char *setting; // that limits it to `total`; NULL: the share of the process does
     budget_part *first;
 };
 
@@ -95,6 +98,14 @@ budget *budget_create(const char *name, uint64_t total) {
     return b;
 }
 
+budget *budget_create_within(budget *parent, const char *name, uint64_t limit,
+                             const char *setting) {
+    budget *b = budget_create(name, limit);
+    b->parent = parent;
+    b->setting = setting;
+    return b;
+}
+
 void budget_destroy(budget *b) {
     if (!b || b == &host) return;
     pthread_mutex_destroy(&b->lock);
@@ -122,6 +133,12 @@ static bool read_share(const char *text, double *out_share, uint64_t *out_bytes)
     return true;
 }
 
+bool budget_read_amount(const char *text, uint64_t *bytes) {
+    double none;
+    return (read_share(text, &none, bytes) && *bytes) ||
+           err_set("an amount of memory '%s'; accepted: from 1M, as 512M or 8G", text);
+}
+
 bool budget_set_share(const char *text) {
     double of_all = DEFAULT_SHARE;
     uint64_t bytes = 0;
@@ -137,6 +154,7 @@ bool budget_set_share(const char *text) {
 }
 
 static uint64_t limit_without_loan(const budget *b) {
+    if (b->setting) return b->total;
     pthread_mutex_lock(&share_lock);
     uint64_t limit = share_bytes ? share_bytes : (uint64_t)((double)b->total * share);
     pthread_mutex_unlock(&share_lock);
@@ -203,10 +221,14 @@ static bool budget_refuse(const budget *b, const budget_row *rows, size_t count,
     add_amount(&text, sum);
     strbuf_add(&text, " of %s would be taken in all, and ", b->name);
     add_amount(&text, limit_of(b));
-    strbuf_add(&text, " may be, of ");
-    add_amount(&text, b->total);
-    strbuf_add(&text, " (--memory 80%% or --memory 8G, or `memory` of roil_desc, sets another "
-                      "limit); the largest parts:");
+    if (b->setting) {
+        strbuf_add(&text, " may be (%s sets another limit); the largest parts:", b->setting);
+    } else {
+        strbuf_add(&text, " may be, of ");
+        add_amount(&text, b->total);
+        strbuf_add(&text, " (--memory 80%% or --memory 8G, or `memory` of roil_desc, sets another "
+                          "limit); the largest parts:");
+    }
     for (size_t i = 0; i < BUDGET_LARGEST && largest[i].bytes > 0; i++) {
         strbuf_add(&text, "%s %s ", i ? "," : "", largest[i].label);
         add_amount(&text, largest[i].bytes);
@@ -225,6 +247,8 @@ static bool is_free(const budget *b, uint64_t bytes) { // under the lock
 
 budget_part *budget_take(budget *b, uint64_t bytes, const char *label) {
     budget_row row = {.bytes = bytes};
+    budget_part *above = b->parent ? budget_take(b->parent, bytes, label) : NULL;
+    if (b->parent && !above) return NULL;
     str_copy(row.label, sizeof row.label, label);
     pthread_mutex_lock(&b->lock);
     // Nothing can be had of no bytes, so that a part of them is only a name.
@@ -232,13 +256,14 @@ budget_part *budget_take(budget *b, uint64_t bytes, const char *label) {
     budget_part *part = NULL;
     if (done) {
         part = mem_alloc(sizeof *part);
-        *part = (budget_part){.owner = b, .bytes = bytes, .next = b->first};
+        *part = (budget_part){.owner = b, .above = above, .bytes = bytes, .next = b->first};
         memcpy(part->label, row.label, sizeof part->label);
         if (b->first) b->first->previous = part;
         b->first = part;
         b->sum += bytes;
     }
     pthread_mutex_unlock(&b->lock);
+    if (!part) budget_give(above);
     return part;
 }
 
@@ -253,11 +278,14 @@ void budget_give(budget_part *part) {
     else
         b->first = part->next;
     pthread_mutex_unlock(&b->lock);
+    budget_give(part->above);
     mem_free(part);
 }
 
 bool budget_resize(budget_part *part, uint64_t bytes) {
     budget *b = part->owner;
+    const uint64_t before = part->bytes;
+    if (part->above && !budget_resize(part->above, bytes)) return false;
     pthread_mutex_lock(&b->lock);
     uint64_t more = bytes > part->bytes ? bytes - part->bytes : 0;
     bool done = more == 0 || is_free(b, more);
@@ -270,6 +298,7 @@ bool budget_resize(budget_part *part, uint64_t bytes) {
         budget_refuse(b, &row, 1, plus(b->sum, more));
     }
     pthread_mutex_unlock(&b->lock);
+    if (!done && part->above) budget_resize(part->above, before); // less than it has
     return done;
 }
 
@@ -278,6 +307,7 @@ void budget_note(budget_part *part, uint64_t bytes) {
     part->owner->sum += bytes - part->bytes;
     part->bytes = bytes;
     pthread_mutex_unlock(&part->owner->lock);
+    if (part->above) budget_note(part->above, bytes);
 }
 
 void budget_move(budget_part *from, budget_part *to, uint64_t bytes) {
@@ -285,6 +315,7 @@ void budget_move(budget_part *from, budget_part *to, uint64_t bytes) {
     from->bytes -= bytes;
     to->bytes += bytes;
     pthread_mutex_unlock(&from->owner->lock);
+    if (from->above && to->above) budget_move(from->above, to->above, bytes);
 }
 
 // ---- lists ------------------------------------------------------------------------------------
@@ -319,19 +350,25 @@ bool budget_ask(budget *b, const budget_row *rows, size_t count, uint64_t freed)
     for (size_t i = 0; i < count; i++) sum = plus(sum, rows[i].bytes);
     bool done = sum <= limit_of(b) || sum <= b->sum || budget_refuse(b, rows, count, sum);
     pthread_mutex_unlock(&b->lock);
-    return done;
+    return done && (!b->parent || budget_ask(b->parent, rows, count, freed));
 }
 
 void budget_lend(budget *b, uint64_t bytes) {
     pthread_mutex_lock(&b->lock);
     b->lent = bytes;
     pthread_mutex_unlock(&b->lock);
+    if (b->parent) budget_lend(b->parent, bytes);
+}
+
+static void lower_to(uint64_t *value, uint64_t most) {
+    if (most < *value) *value = most;
 }
 
 uint64_t budget_room(budget *b) {
     pthread_mutex_lock(&b->lock);
     uint64_t limit = limit_of(b), room = limit > b->sum ? limit - b->sum : 0;
     pthread_mutex_unlock(&b->lock);
+    if (b->parent) lower_to(&room, budget_room(b->parent));
     return room;
 }
 
@@ -339,6 +376,7 @@ uint64_t budget_get_limit(budget *b) {
     pthread_mutex_lock(&b->lock);
     uint64_t limit = limit_of(b);
     pthread_mutex_unlock(&b->lock);
+    if (b->parent) lower_to(&limit, budget_get_limit(b->parent));
     return limit;
 }
 

@@ -43,6 +43,11 @@ bool budget_set_share(const char *text);
 budget *budget_host(void);
 // Creates a budget of `total` bytes. `name` appears in messages: "device memory".
 budget *budget_create(const char *name, uint64_t total);
+// Creates a budget of `limit` bytes whose parts are taken from `parent`, too, so that neither limit
+// is passed. `setting` appears in messages: who sets another limit.
+budget *budget_create_within(budget *parent, const char *name, uint64_t limit, const char *setting);
+// Reads an amount, as "512M" or "8G". False with a message.
+bool budget_read_amount(const char *text, uint64_t *bytes);
 void budget_destroy(budget *b); // its parts must be given back before; NULL is allowed
 
 // Takes bytes from a budget. NULL with a message, and nothing is taken, when they are too many.

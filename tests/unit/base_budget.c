@@ -214,6 +214,48 @@ static void threads_never_take_more_than_there_is(void **state) {
     budget_destroy(b);
 }
 
+// Of two budgets within one, each has a limit of its own, and both keep that of the whole.
+static void a_budget_within_another_keeps_both_limits(void **state) {
+    (void)state;
+    budget *all = make("10%");
+    budget *first = budget_create_within(all, "the first's memory", 70 * MIB, "`first`");
+    budget *second = budget_create_within(all, "the second's memory", 50 * MIB, "`second`");
+    budget_part *a = budget_take(first, 60 * MIB, "a");
+    assert_non_null(a);
+    assert_null(budget_take(first, 11 * MIB, "b"));
+    assert_non_null(strstr(err_get(), "71.0 MiB of the first's memory would be taken in all, and "
+                                      "70.0 MiB may be (`first` sets another limit)"));
+    assert_int_equal(budget_get(all).sum, 60 * MIB); // nothing stays of what was refused
+    assert_null(budget_take(second, 45 * MIB, "c"));
+    assert_non_null(strstr(err_get(), "105.0 MiB of memory of a test"));
+    assert_int_equal(budget_get(second).sum, 0);
+    assert_int_equal(budget_room(second), 40 * MIB);
+    budget_part *d = budget_take(second, 0, "d");
+    assert_true(budget_resize(d, 40 * MIB));
+    assert_int_equal(budget_get(all).sum, 100 * MIB);
+    assert_false(budget_resize(d, 41 * MIB));
+    const budget_row row = {.label = "e", .bytes = 5 * MIB};
+    assert_false(budget_ask(first, &row, 1, 0)); // the whole has no room
+    assert_true(budget_resize(d, 10 * MIB));
+    assert_true(budget_ask(first, &row, 1, 0));
+    assert_int_equal(budget_get(all).sum, 70 * MIB);
+    budget_give(a);
+    budget_give(d);
+    assert_int_equal(budget_get(all).sum, 0);
+    budget_destroy(first);
+    budget_destroy(second);
+    budget_destroy(all);
+}
+
+static void an_amount_is_read_or_refused(void **state) {
+    (void)state;
+    uint64_t bytes;
+    assert_true(budget_read_amount("512M", &bytes));
+    assert_int_equal(bytes, 512 * (uint64_t)MIB);
+    assert_false(budget_read_amount("60%", &bytes));
+    assert_false(budget_read_amount("", &bytes));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         // First: before any other asks for the host's.
@@ -226,6 +268,8 @@ int main(void) {
         cmocka_unit_test_teardown(what_is_asked_for_takes_nothing, put_back),
         cmocka_unit_test_teardown(a_loan_ends_below_what_there_is, put_back),
         cmocka_unit_test_teardown(a_share_is_read_or_refused, put_back),
+        cmocka_unit_test_teardown(a_budget_within_another_keeps_both_limits, put_back),
+        cmocka_unit_test(an_amount_is_read_or_refused),
         cmocka_unit_test_teardown(threads_never_take_more_than_there_is, put_back),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
