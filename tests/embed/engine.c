@@ -1,7 +1,7 @@
 // An engine with a Vulkan device, a camera and a picture of its own, and two effects of roil in it:
-// one behind a wall and one before. It draws 60 frames and writes the last one:
+// one behind a wall and one before. It draws 60 frames, or so many, and writes the last one:
 //
-//   engine FAR.lua NEAR.lua PICTURE.pfm
+//   engine FAR.lua NEAR.lua PICTURE.pfm [FRAMES]
 //
 // engine_vulkan.h has what every engine has; all that concerns roil is here.
 #include "engine_vulkan.h"
@@ -9,6 +9,19 @@
 
 static roil *r;
 static roil_effect *effects[EFFECTS];
+
+static void close_all(void) {
+    for (int i = 0; i < EFFECTS; i++) roil_unload(effects[i]);
+    roil_destroy(r);
+    close_engine();
+}
+
+// Says why, and leaves nothing behind.
+static void stop(void) {
+    fprintf(stderr, "engine: %s\n", roil_error());
+    close_all();
+    exit(complaints ? 2 : 1);
+}
 
 // The device is the engine's own, made with what roil asks for besides.
 static void open_roil(void) {
@@ -34,15 +47,16 @@ static void open_roil(void) {
                           .features = &needs.features,
                           .extensions = needs.extensions,
                           .extension_count = needs.extension_count};
-    r = roil_create(&(roil_desc){.vulkan = &vulkan, .memory = getenv("ENGINE_MEMORY")});
-    if (!r) FAIL("%s", roil_error());
+    open_engine(); // what is left of it
+    r = roil_create(&(roil_desc){.vulkan = &vulkan, .device_memory = getenv("ENGINE_MEMORY")});
+    if (!r) stop();
 }
 
-static roil_effect *open_effect(const char *file) {
-    roil_effect *e = roil_load(r, file, NULL, 0);
-    if (!e || !roil_make_layer(e, NULL) || !roil_prepare(e, WIDTH, HEIGHT))
-        FAIL("%s", roil_error());
-    return e;
+static void open_effect(int i, const char *file) {
+    effects[i] = roil_load(r, file, NULL, 0);
+    if (!effects[i] || !roil_make_layer(effects[i], NULL) ||
+        !roil_prepare(effects[i], WIDTH, HEIGHT))
+        stop();
 }
 
 // ---- a frame ----------------------------------------------------------------------------------
@@ -91,19 +105,20 @@ static void draw_scene(const roil_view *view, uint64_t after) {
 // One effect into its two images, between the engine's own work.
 static void draw_effect(int i, int frame, const roil_view *view, uint64_t before, uint64_t after) {
     const roil_vulkan_semaphore wait = {timeline, before}, signal = {timeline, after};
-    roil_vulkan_frame f = {.depth = {depth.image, deep, WIDTH, HEIGHT,
-                                     VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
-                                     VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL},
-                           .waits = &wait,
-                           .wait_count = 1,
-                           .signals = &signal,
-                           .signal_count = 1};
+    roil_vulkan_frame f = {.waits = &wait, .wait_count = 1, .signals = &signal, .signal_count = 1};
+    f.depth = (roil_vulkan_image){.image = depth.image,
+                                  .format = deep,
+                                  .width = WIDTH,
+                                  .height = HEIGHT,
+                                  .before = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
+                                  .after = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL};
     for (int k = 0; k < 2; k++) // ROIL_LAYER_COLOR, ROIL_LAYER_TRANSMITTANCE
-        f.images[k] = (roil_vulkan_image){
-            layers[i][k].image,     hdr, WIDTH, HEIGHT, VK_IMAGE_LAYOUT_UNDEFINED,
-            VK_IMAGE_LAYOUT_GENERAL};
-    if (!roil_set_view(effects[i], view) || !roil_vulkan_render(effects[i], frame, &f))
-        FAIL("%s", roil_error());
+        f.images[k] = (roil_vulkan_image){.image = layers[i][k].image,
+                                          .format = hdr,
+                                          .width = WIDTH,
+                                          .height = HEIGHT,
+                                          .after = VK_IMAGE_LAYOUT_GENERAL};
+    if (!roil_set_view(effects[i], view) || !roil_vulkan_render(effects[i], frame, &f)) stop();
 }
 
 static void draw_frame(int frame) {
@@ -119,16 +134,14 @@ static void draw_frame(int frame) {
 }
 
 int main(int count, char **arguments) {
-    if (count != 2 + EFFECTS) FAIL("FAR.lua NEAR.lua PICTURE.pfm are expected");
+    if (count < 2 + EFFECTS) FAIL("FAR.lua NEAR.lua PICTURE.pfm are expected");
+    const int frames = count > 2 + EFFECTS ? atoi(arguments[2 + EFFECTS]) : FRAMES;
     open_instance();
     open_roil();
-    open_engine();
-    for (int i = 0; i < EFFECTS; i++) effects[i] = open_effect(arguments[1 + i]);
-    for (int frame = 0; frame < FRAMES; frame++) draw_frame(frame);
-    wait_for(4 * FRAMES);
+    for (int i = 0; i < EFFECTS; i++) open_effect(i, arguments[1 + i]);
+    for (int frame = 0; frame < frames; frame++) draw_frame(frame);
+    wait_for(4 * (uint64_t)frames);
     write_picture(arguments[1 + EFFECTS]);
-    for (int i = 0; i < EFFECTS; i++) roil_unload(effects[i]);
-    roil_destroy(r);
-    close_engine();
-    return messages ? EXIT_FAILURE : EXIT_SUCCESS;
+    close_all();
+    return complaints ? 2 : 0;
 }

@@ -42,7 +42,7 @@ static VkDescriptorSetLayout set_layout;
 static VkDescriptorPool sets;
 static VkDescriptorSet set;
 static image picture, depth, layers[EFFECTS][2]; // of each effect: colour, transmittance
-static int messages;
+static int complaints;
 
 static VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
                                                  VkDebugUtilsMessageTypeFlagsEXT types,
@@ -50,7 +50,7 @@ static VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlag
                                                  void *user) {
     (void)severity, (void)types, (void)user;
     fprintf(stderr, "validation: %s\n", data->pMessage);
-    messages++;
+    complaints++;
     return VK_FALSE;
 }
 
@@ -271,17 +271,17 @@ static void open_engine(void) {
     VkSemaphoreCreateInfo semaphore = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO,
                                        .pNext = &type};
     VK(vkCreateSemaphore(device, &semaphore, NULL, &timeline));
-    picture = make_image(hdr,
-                         VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_STORAGE_BIT |
-                             VK_IMAGE_USAGE_TRANSFER_SRC_BIT,
-                         VK_IMAGE_ASPECT_COLOR_BIT);
-    depth =
-        make_image(deep, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
-                   VK_IMAGE_ASPECT_DEPTH_BIT);
+    const VkImageUsageFlags copied =
+        VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    picture =
+        make_image(hdr, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_STORAGE_BIT | copied,
+                   VK_IMAGE_ASPECT_COLOR_BIT);
+    depth = make_image(
+        deep, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | copied,
+        VK_IMAGE_ASPECT_DEPTH_BIT);
     for (int i = 0; i < 2 * EFFECTS; i++)
         layers[i / 2][i % 2] =
-            make_image(hdr, VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
-                       VK_IMAGE_ASPECT_COLOR_BIT);
+            make_image(hdr, VK_IMAGE_USAGE_STORAGE_BIT | copied, VK_IMAGE_ASPECT_COLOR_BIT);
     make_draw_pipeline();
     make_compose_pipeline();
     VkMemoryRequirements needs;
@@ -303,6 +303,7 @@ static void destroy_image(image *i) {
 
 // Validation tells what roil left behind.
 static void close_engine(void) {
+    vkDeviceWaitIdle(device);
     vkDestroyBuffer(device, host_buffer, NULL);
     vkFreeMemory(device, host_memory, NULL);
     destroy_image(&picture);

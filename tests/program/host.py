@@ -2,6 +2,7 @@
 `roil render` makes of them, and the engine's walls stand before and behind them."""
 import math
 import os
+import random
 import struct
 
 from lib.pictures import Exr
@@ -9,6 +10,7 @@ from lib.program import BINARY, Case, SOURCE, main
 
 ENGINE, EFFECTS = os.path.join(BINARY, "engine"), os.path.join(SOURCE, "tests", "embed")
 WIDTH, HEIGHT, LAST = 96, 54, 59
+SAMPLE = 8  # calls that fail
 FAR, NEAR = os.path.join(EFFECTS, "far.lua"), os.path.join(EFFECTS, "near.lua")
 WALL = (0.30, 0.26, 0.22)
 TRIANGLES = [(((-3, 0, -0.5), (0.3, 0, -0.5), (-3, 0, 1.6)), WALL),  # of engine.glsl
@@ -65,6 +67,13 @@ def surface_at(x, y):
     return found.pop() if len(found) == 1 else "edge"
 
 
+def choose(count):
+    """A call of each of some equal parts, or each step-th: ROIL_ENGINE_FAULTS says the step."""
+    step = int(os.environ.get("ROIL_ENGINE_FAULTS", "0"))
+    chance = random.Random(count)
+    return range(1, count + 1, step) if step else [int((i + chance.random()) * count / SAMPLE) + 1 for i in range(SAMPLE)]
+
+
 class Host(Case):
     def engine(self, *arguments, far=FAR, near=NEAR, **environment):
         return self.run_program(far, near, "engine.pfm", *arguments, program=ENGINE, environment=environment)
@@ -115,6 +124,30 @@ class Host(Case):
                     self.assertLess(max(a - b for a, b in zip(seen, whole)), 0.05 + max(solid))
         for what, count in counts.items():
             self.assertGreater(count, 20, what)
+
+    def test_a_device_budget_too_small_is_said(self):
+        done = self.engine("1", ENGINE_MEMORY="1M", ENGINE_BARE="1")
+        self.assertEqual((done.returncode, done.stdout), (1, ""))
+        self.assertRegex(done.stderr, "^engine: .*`device_memory` of roil_desc sets another limit.*\n$")
+        self.assertFalse(os.path.exists(self.path("engine.pfm")))
+
+    def test_calls_that_fail_are_said(self):
+        """A sample of the calls of Vulkan, the engine's and roil's, fails, each once: with a message, and nothing is
+        left behind that validation knows of."""
+        counts = self.path("counts")
+        faults = {"LD_PRELOAD": os.path.join(BINARY, "libfault.so"), "ROIL_FAULT_FILE": counts}
+        done = self.engine("2", **faults)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        calls = struct.unpack("<Q", self.read("counts")[:8])[0]
+        self.assertGreater(calls, 100)
+        for number in choose(calls):
+            with self.subTest(call=number):
+                self.write("counts", b"")
+                done = self.engine("2", ROIL_FAULT=f"vulkan {number} once", **faults)
+                self.assertIn(done.returncode, (0, 1), done.stderr)
+                self.assertNotIn("validation: ", done.stderr)
+                lines = [line for line in done.stderr.splitlines() if line.startswith("engine: ")]
+                self.assertEqual(len(lines), done.returncode, done.stderr)
 
 
 if __name__ == "__main__":
