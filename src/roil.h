@@ -92,6 +92,10 @@ typedef struct roil_desc {
     // refused with a message that names the sum and its three largest parts. The limit belongs to
     // the process: the last roil_create that sets it decides.
     const char *memory;
+    // Limit on what this roil takes of the device's memory, besides that one: "512M", "2G". An
+    // effect that needs more fails in roil_prepare, with such a message; what is only ahead of its
+    // time becomes less. NULL: none.
+    const char *device_memory;
     // Called ten times a second, on the thread of roil_create, while that thread waits for a frame
     // that has taken more than a second. `seconds` is the time waited so far. Returning false gives
     // up the device, which is then lost. May be NULL.

@@ -79,8 +79,8 @@ bool roil_set_lights(roil_effect *e, const roil_lights *lights);
 // An image of the last frame on its way from the device.
 typedef struct roil_readback roil_readback;
 // Begins to read an image that is kept: its name, or NULL for the layer's colour, or else the
-// scene-linear picture, or else the one that is shown. Returns at once. Call it after roil_render, and roil_unload after
-// roil_read_end. NULL with a message.
+// scene-linear picture, or else the one that is shown. Returns at once. Call it after roil_render,
+// and roil_unload after roil_read_end. NULL with a message.
 roil_readback *roil_read_begin(roil_effect *e, const char *image);
 bool roil_read_ready(roil_readback *b); // it has arrived; never waits
 void roil_read_size(const roil_readback *b, uint32_t *width, uint32_t *height);

@@ -70,6 +70,9 @@ typedef struct roil_vulkan_image { // of the host: two-dimensional, of one level
     // The layouts in which roil finds the image and in which it leaves it. Its content need not be
     // kept where an image is written: `before` may be VK_IMAGE_LAYOUT_UNDEFINED there.
     VkImageLayout before, after;
+    // It goes to another process or API (VK_QUEUE_FAMILY_EXTERNAL) with each frame; only for images
+    // that are written.
+    bool external;
 } roil_vulkan_image;
 
 typedef struct roil_vulkan_semaphore {
@@ -101,6 +104,32 @@ typedef struct roil_vulkan_frame {
 bool roil_vulkan_render(roil_effect *e, double frame, const roil_vulkan_frame *f);
 // The same for a host whose steps are uneven, as roil_advance.
 bool roil_vulkan_advance(roil_effect *e, double frame, const roil_vulkan_frame *f);
+
+// ---- images for other processes and APIs ------------------------------------------------------
+
+typedef struct roil_vulkan_shared {
+    // Of roil_vulkan_share_image: as roil_vulkan_frame.images takes it.
+    roil_vulkan_image image;
+    roil_vulkan_semaphore semaphore; // of roil_vulkan_share_semaphore: for `signals`; a timeline
+    // To be imported as VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT, or as such a semaphore, by a
+    // device and a driver of these UUIDs. Whoever imports or closes it owns it.
+    int fd;
+    VkDeviceSize size;    // of the image's memory, which is dedicated to it ...
+    uint32_t memory_type; // ... and its type
+    uint8_t device_uuid[VK_UUID_SIZE], driver_uuid[VK_UUID_SIZE];
+    void *inside; // roil's own
+} roil_vulkan_shared;
+// Make an image that a layer can be drawn into, and a semaphore, on the device of roil, its own or
+// the host's, that another process or API can open. The image is made with tiling OPTIMAL, one
+// level, and the usages TRANSFER_DST, TRANSFER_SRC and SAMPLED, which whoever imports it says, too.
+// False with a message, as where the device lacks VK_KHR_external_memory_fd or
+// VK_KHR_external_semaphore_fd, or cannot export such a thing.
+bool roil_vulkan_share_image(roil *r, VkFormat format, uint32_t width, uint32_t height,
+                             roil_vulkan_shared *out);
+bool roil_vulkan_share_semaphore(roil *r, roil_vulkan_shared *out);
+// Call it once the frames that use it are done, and before roil_destroy. The file descriptor, and
+// what was imported by it, stay.
+void roil_vulkan_unshare(roil *r, roil_vulkan_shared *shared);
 
 #ifdef __cplusplus
 }

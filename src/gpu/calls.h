@@ -18,8 +18,10 @@
     X(EnumerateDeviceExtensionProperties)                                                          \
     X(EnumeratePhysicalDevices)                                                                    \
     X(GetDeviceProcAddr)                                                                           \
+    X(GetPhysicalDeviceExternalSemaphoreProperties)                                                \
     X(GetPhysicalDeviceFeatures2)                                                                  \
     X(GetPhysicalDeviceFormatProperties)                                                           \
+    X(GetPhysicalDeviceImageFormatProperties2)                                                     \
     X(GetPhysicalDeviceImageFormatProperties)                                                      \
     X(GetPhysicalDeviceMemoryProperties)                                                           \
     X(GetPhysicalDeviceProperties2)                                                                \

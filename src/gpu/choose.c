@@ -42,7 +42,7 @@ int vk_queue_family_find(const vk_calls *vk, VkPhysicalDevice physical, VkSurfac
     return -1;
 }
 
-static bool has_extension(const vk_calls *vk, VkPhysicalDevice physical, const char *name) {
+bool vk_has_extension(const vk_calls *vk, VkPhysicalDevice physical, const char *name) {
     uint32_t count = 0;
     if (vk->EnumerateDeviceExtensionProperties(physical, NULL, &count, NULL) != VK_SUCCESS) {
         return false;
@@ -67,7 +67,7 @@ static void lacks(gpu_info *info, const char *what) {
 // The environment may turn them down, so that what stands in for them can be tried on any device.
 bool vk_can_push(const vk_calls *vk, VkPhysicalDevice physical) {
     const char *set = getenv("ROIL_PUSH_DESCRIPTORS");
-    return has_extension(vk, physical, VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME) &&
+    return vk_has_extension(vk, physical, VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME) &&
            !(set && strcmp(set, "0") == 0);
 }
 
@@ -84,7 +84,7 @@ static void list_missing(const vk_calls *vk, VkPhysicalDevice physical, VkSurfac
     } else if (surface && vk_queue_family_find(vk, physical, surface) < 0) {
         lacks(info, "a queue that can show pictures in the window");
     }
-    if (surface && !has_extension(vk, physical, VK_KHR_SWAPCHAIN_EXTENSION_NAME)) {
+    if (surface && !vk_has_extension(vk, physical, VK_KHR_SWAPCHAIN_EXTENSION_NAME)) {
         lacks(info, VK_KHR_SWAPCHAIN_EXTENSION_NAME);
     }
     vk_features there;

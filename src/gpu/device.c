@@ -13,9 +13,9 @@ static VkDevice vk_device_create(gpu *g, const vk_choice *choice, int copies) {
     want.core.features.drawIndirectFirstInstance = g->profile.limits.first_instance;
     g->draws_many = want.core.features.multiDrawIndirect;
 
-    const char *extensions[2];
-    uint32_t extension_count = 0;
-    if (choice->pushes) extensions[extension_count++] = VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME;
+    const char *extensions[1 + GPU_MAX_NEEDS];
+    uint32_t extension_count =
+        vk_host_extensions(&g->vk, choice->physical, choice->pushes, extensions);
     if (g->window.surface) extensions[extension_count++] = VK_KHR_SWAPCHAIN_EXTENSION_NAME;
     float priority = 1.0f;
     VkDeviceQueueCreateInfo queues[2] = {{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
@@ -99,11 +99,11 @@ static void take_choice(gpu *g, const gpu_desc *desc, const vk_choice *choice) {
     if (is_small(desc)) vk_profile_make_small(&g->profile);
 }
 
-static bool finish_device(gpu *g, const vk_choice *choice, uint32_t index) {
+static bool finish_device(gpu *g, const gpu_desc *desc, const vk_choice *choice, uint32_t index) {
     if (!vk_calls_find_device(&g->vk, g->device)) return false;
     g->vk.GetDeviceQueue(g->device, g->family, index, &g->queue);
     load_limits(g);
-    vk_pool_init(g);
+    vk_pool_init(g, desc->memory);
     load_calls(g, choice->pushes);
     return true;
 }
@@ -117,7 +117,7 @@ static bool open_own_device(gpu *g, const gpu_desc *desc) {
     g->family = (uint32_t)vk_queue_family_find(&g->vk, g->physical, g->window.surface);
     g->copier.family = vk_transfer_family_find(&g->vk, g->physical);
     g->device = vk_device_create(g, choice, g->copier.family);
-    return g->device && finish_device(g, choice, 0);
+    return g->device && finish_device(g, desc, choice, 0);
 }
 
 static bool open_host_device(gpu *g, const gpu_desc *desc) {
@@ -128,7 +128,9 @@ static bool open_host_device(gpu *g, const gpu_desc *desc) {
     take_choice(g, desc, &choice);
     g->family = host->family;
     g->device = host->device;
-    return finish_device(g, &choice, host->index);
+    if (!finish_device(g, desc, &choice, host->index)) return false;
+    vk_host_forget_calls(g, host);
+    return true;
 }
 
 static bool validation_wanted(const gpu_desc *desc) {

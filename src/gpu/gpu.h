@@ -80,6 +80,7 @@ bool gpu_host_find_needs(const gpu_host *host, void *core, void *v11, void *v12,
 typedef struct gpu_desc {
     const gpu_host *host;  // whose device to use; NULL: one of its own, as follows
     const char *device;    // part of a name (any case) or an index as `gpu_list` counts; NULL: best
+    uint64_t memory;       // bytes that it may take of the device's memory; 0: as budget.h says
     const char *cache_dir; // folder of the pipeline cache; NULL: no cache
     bool validate; // Khronos validation with synchronization validation; also $ROIL_VALIDATE=1
     const gpu_window *window; // NULL: nothing is shown; else the device can present to it
@@ -382,6 +383,7 @@ typedef struct gpu_host_image {
     int format;     // VkFormat
     uint32_t width, height;
     int before, after; // VkImageLayout: as it is handed over, and as it is given back
+    bool external;     // it is given to another process or API, and never comes back with content
     const char *label; // for messages
 } gpu_host_image;
 // An image over a host's image of depths, in an open frame, for shaders to sample. NULL with a
@@ -391,6 +393,22 @@ void gpu_image_give_back(gpu *g, gpu_image *borrowed, const gpu_host_image *to);
 // In an open frame: copies an image of colours to a host's, scaled and converted where these
 // differ. `from` NULL: only the layout changes.
 bool gpu_image_hand_out(gpu *g, gpu_image *from, const gpu_host_image *to);
+
+// ---- for other processes ----------------------------------------------------------------------
+
+typedef struct gpu_shared { // an image with memory of its own, or a semaphore, that others can open
+    uint64_t image;         // VkImage, to copy to and to be sampled; 0: it is a semaphore
+    uint64_t semaphore;     // VkSemaphore, a timeline
+    int fd;                 // opaque; whoever imports or closes it owns it
+    uint64_t size;          // bytes of the image's memory, which is for it alone
+    uint32_t type;          // of the memory, among those of the device
+    uint8_t device[16], driver[16]; // UUIDs that whoever imports it must have, too
+    void *inside;
+} gpu_shared;
+// False with a message, as where the device cannot share such a thing.
+bool gpu_share_image(gpu *g, int format, uint32_t width, uint32_t height, gpu_shared *out);
+bool gpu_share_semaphore(gpu *g, gpu_shared *out);
+void gpu_unshare(gpu *g, gpu_shared *shared); // once no submission uses it; `fd` is not closed
 
 void gpu_image_clear(gpu *g, gpu_image *image, const float color[4]); // inside a frame, all mips
 void gpu_buffer_fill(gpu *g, gpu_buffer *buffer, uint32_t word);      // inside a frame

@@ -10,7 +10,16 @@
 #include <assert.h>
 #include <string.h>
 
-static const char *const extensions[] = {VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME};
+uint32_t vk_host_extensions(const vk_calls *vk, VkPhysicalDevice physical, bool pushes,
+                            const char *out[GPU_MAX_NEEDS]) {
+    static const char *const shares[] = {VK_KHR_EXTERNAL_MEMORY_FD_EXTENSION_NAME,
+                                         VK_KHR_EXTERNAL_SEMAPHORE_FD_EXTENSION_NAME};
+    uint32_t count = 0;
+    if (pushes) out[count++] = VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME;
+    for (size_t i = 0; i < COUNT_OF(shares); i++)
+        if (vk_has_extension(vk, physical, shares[i])) out[count++] = shares[i];
+    return count;
+}
 
 // ---- taking it over ---------------------------------------------------------------------------
 
@@ -60,7 +69,9 @@ bool vk_host_open(gpu *g, const gpu_host *host, vk_choice *out) {
     else
         vk_features_choose(&there, &enabled);
     vk_choice_describe(&g->vk, host->physical, VK_NULL_HANDLE, &enabled,
-                       has_name(host, extensions[0]) && vk_can_push(&g->vk, host->physical), out);
+                       has_name(host, VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME) &&
+                           vk_can_push(&g->vk, host->physical),
+                       out);
     if (!is_usable(out)) return false;
     if (there.core.features.robustBufferAccess && !enabled.core.features.robustBufferAccess)
         log_write(LOG_WARNING, "the host's device is made without robustBufferAccess: shaders of "
@@ -71,6 +82,12 @@ bool vk_host_open(gpu *g, const gpu_host *host, vk_choice *out) {
     g->instance.labels = host->labels;
     g->draws_many = enabled.core.features.multiDrawIndirect;
     return true;
+}
+
+void vk_host_forget_calls(gpu *g, const gpu_host *host) {
+    if (!has_name(host, VK_KHR_EXTERNAL_MEMORY_FD_EXTENSION_NAME)) g->vk.GetMemoryFdKHR = NULL;
+    if (!has_name(host, VK_KHR_EXTERNAL_SEMAPHORE_FD_EXTENSION_NAME))
+        g->vk.GetSemaphoreFdKHR = NULL;
 }
 
 bool gpu_host_find_needs(const gpu_host *host, void *core, void *v11, void *v12, void *v13,
@@ -85,7 +102,7 @@ bool gpu_host_find_needs(const gpu_host *host, void *core, void *v11, void *v12,
     const bool pushes = vk_can_push(&vk, host->physical);
     vk_choice_describe(&vk, host->physical, VK_NULL_HANDLE, &there, pushes, &choice);
     if (!is_usable(&choice)) return false;
-    if (pushes) out->extensions[out->extension_count++] = extensions[0];
+    out->extension_count = vk_host_extensions(&vk, host->physical, pushes, out->extensions);
     *(VkPhysicalDeviceFeatures2 *)core = want.core;
     *(VkPhysicalDeviceVulkan11Features *)v11 = want.v11;
     *(VkPhysicalDeviceVulkan12Features *)v12 = want.v12;
@@ -153,7 +170,7 @@ static VkImageAspectFlags aspect_of(int format) {
 }
 
 static void record(gpu *g, const gpu_host_image *image, VkImageLayout from, VkImageLayout to,
-                   bool ours) {
+                   bool ours, bool leaves) {
     const VkPipelineStageFlags2 all = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
     const VkAccessFlags2 any = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
     VkImageMemoryBarrier2 barrier = {
@@ -164,8 +181,8 @@ static void record(gpu *g, const gpu_host_image *image, VkImageLayout from, VkIm
         .dstAccessMask = any,
         .oldLayout = from,
         .newLayout = to,
-        .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-        .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+        .srcQueueFamilyIndex = leaves ? g->family : VK_QUEUE_FAMILY_IGNORED,
+        .dstQueueFamilyIndex = leaves ? VK_QUEUE_FAMILY_EXTERNAL : VK_QUEUE_FAMILY_IGNORED,
         .image = (VkImage)(uintptr_t)image->image,
         .subresourceRange = {
             .aspectMask = aspect_of(image->format), .levelCount = 1, .layerCount = 1}};
@@ -218,7 +235,7 @@ gpu_image *gpu_image_borrow(gpu *g, const gpu_host_image *from) {
 
 void gpu_image_give_back(gpu *g, gpu_image *borrowed, const gpu_host_image *to) {
     assert(g->frame && borrowed->borrowed);
-    record(g, to, borrowed->tracked[0].state.layout, (VkImageLayout)to->after, false);
+    record(g, to, borrowed->tracked[0].state.layout, (VkImageLayout)to->after, false, false);
     gpu_image_destroy(g, borrowed);
 }
 
@@ -266,13 +283,14 @@ bool gpu_image_hand_out(gpu *g, gpu_image *from, const gpu_host_image *to) {
         vk_use_image(g, from, 0, 1, vk_image_from);
         vk_uses_flush(g, g->frame->batch.commands);
         // What it held before does not count: every texel is written.
-        record(g, to, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, false);
+        record(g, to, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, false,
+               false);
         layout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
         if (same)
             copy(g, from, to);
         else
             blit(g, from, to, scaled);
     }
-    record(g, to, layout, (VkImageLayout)to->after, from && can);
+    record(g, to, layout, (VkImageLayout)to->after, from && can, to->external);
     return can;
 }

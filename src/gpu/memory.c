@@ -177,10 +177,16 @@ void *vk_memory_map(const vk_memory *memory) {
     return memory->block->map + memory->place.offset;
 }
 
-void vk_pool_init(gpu *g) {
+void vk_pool_init(gpu *g, uint64_t limit) {
     bool shared = g->profile.shares_memory;
     g->pool.budgets[0] = budget_host();
-    g->pool.budgets[1] = shared ? budget_host() : budget_create("device memory", g->info.memory);
+    budget *all = shared ? budget_host() : budget_create("device memory", g->info.memory);
+    g->pool.budgets[1] = all;
+    if (limit) {
+        g->pool.whole = all;
+        g->pool.budgets[1] =
+            budget_create_within(all, "device memory", limit, "`device_memory` of roil_desc");
+    }
     for (int side = 0; side < 2; side++)
         g->pool.spare[side] =
             budget_take(g->pool.budgets[side], 0, "room in blocks of the device's memory");
@@ -191,6 +197,7 @@ void vk_pool_deinit(gpu *g) {
     mem_free(g->pool.blocks);
     for (int side = 0; side < 2; side++) budget_give(g->pool.spare[side]);
     if (g->pool.budgets[1]) budget_destroy(g->pool.budgets[1]);
+    if (g->pool.whole) budget_destroy(g->pool.whole);
     g->pool = (vk_pool){0};
 }
 

@@ -69,6 +69,7 @@ int vk_queue_family_find(const vk_calls *vk, VkPhysicalDevice physical, VkSurfac
 void vk_choice_describe(const vk_calls *vk, VkPhysicalDevice physical, VkSurfaceKHR surface,
                         const vk_features *features, bool pushes, vk_choice *out);
 bool vk_can_push(const vk_calls *vk, VkPhysicalDevice physical);
+bool vk_has_extension(const vk_calls *vk, VkPhysicalDevice physical, const char *name);
 
 gpu_profile vk_profile_find(const gpu_info *info, VkDriverId driver, const char *driver_info,
                             const gpu_limits *limits);
@@ -118,10 +119,11 @@ typedef struct vk_pool {
     // By whether the heap is the device's own. Of a device that shares the host's memory both are
     // the host's budget.
     budget *budgets[2];
+    budget *whole; // of which the device's is a part with a limit of its own; NULL: it is not
     budget_part *spare[2]; // of blocks: what no object has
 } vk_pool;
 
-void vk_pool_init(gpu *g); // once the device is known
+void vk_pool_init(gpu *g, uint64_t limit); // once the device is known; bytes, 0: none of its own
 // `label` is for messages, and for the account of memory.
 bool vk_memory_alloc(gpu *g, const VkMemoryRequirements *needs, vk_memory_kind kind, bool image,
                      const char *label, vk_memory *out);
@@ -386,10 +388,15 @@ typedef struct vk_syncs { // of the open frame, with the host
 
 // Takes over what the host gives: finds the calls, and describes its device. False with a message.
 bool vk_host_open(gpu *g, const gpu_host *host, vk_choice *out);
+// Forgets calls of extensions that the host has not enabled, which drivers may have all the same.
+void vk_host_forget_calls(gpu *g, const gpu_host *host);
 // Moves the frame's semaphores into a submission.
 void vk_host_add_syncs(gpu *g, VkSemaphoreSubmitInfo *waits, uint32_t *wait_count,
                        VkSemaphoreSubmitInfo *signals, uint32_t *signal_count);
 VkResult vk_host_submit(gpu *g, const VkSubmitInfo2 *info); // under the host's lock
+// Lists the extensions that roil uses where a device has them. Returns how many there are.
+uint32_t vk_host_extensions(const vk_calls *vk, VkPhysicalDevice physical, bool pushes,
+                            const char *out[GPU_MAX_NEEDS]);
 
 // ---- the device -------------------------------------------------------------------------------
 

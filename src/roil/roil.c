@@ -62,6 +62,8 @@ static char *joined(const char *folder, const char *name) {
 
 // The device that can show the window comes first, and the effects' is the same one.
 static bool open_device(roil *r, const roil_desc *desc) {
+    uint64_t limit = 0;
+    if (desc->device_memory && !budget_read_amount(desc->device_memory, &limit)) return false;
     const roil_window_desc *window = desc->vulkan ? NULL : desc->window;
     gpu_window shown = {0};
     if (window)
@@ -72,6 +74,7 @@ static bool open_device(roil *r, const roil_desc *desc) {
     r->window = window != NULL;
     gpu_desc how = {.device = desc->device,
                     .cache_dir = r->cache,
+                    .memory = limit,
                     .validate = desc->validate,
                     .window = window ? &shown : NULL,
                     .timeout = desc->timeout,

@@ -64,6 +64,7 @@ static gpu_host_image image_of(const roil_vulkan_image *image, const char *label
                             .height = image->height,
                             .before = (int)image->before,
                             .after = (int)image->after,
+                            .external = image->external,
                             .label = label};
 }
 
@@ -169,4 +170,47 @@ bool roil_vulkan_render(roil_effect *e, double frame, const roil_vulkan_frame *f
 
 bool roil_vulkan_advance(roil_effect *e, double frame, const roil_vulkan_frame *f) {
     return render(e, frame, f, roil_advance);
+}
+
+// ---- for other processes ----------------------------------------------------------------------
+
+static void take_shared(const gpu_shared *from, roil_vulkan_shared *out) {
+    *out = (roil_vulkan_shared){.semaphore.semaphore = (VkSemaphore)(uintptr_t)from->semaphore,
+                                .fd = from->fd,
+                                .size = from->size,
+                                .memory_type = from->type,
+                                .inside = from->inside};
+    memcpy(out->device_uuid, from->device, sizeof out->device_uuid);
+    memcpy(out->driver_uuid, from->driver, sizeof out->driver_uuid);
+}
+
+bool roil_vulkan_share_image(roil *r, VkFormat format, uint32_t width, uint32_t height,
+                             roil_vulkan_shared *out) {
+    gpu_shared shared;
+    if (!r->device) return err_set("no device: there is no image to share");
+    if (!gpu_share_image(r->device, (int)format, width, height, &shared)) return false;
+    take_shared(&shared, out);
+    out->image = (roil_vulkan_image){.image = (VkImage)(uintptr_t)shared.image,
+                                     .format = format,
+                                     .width = width,
+                                     .height = height,
+                                     .after = VK_IMAGE_LAYOUT_GENERAL,
+                                     .external = true};
+    return true;
+}
+
+bool roil_vulkan_share_semaphore(roil *r, roil_vulkan_shared *out) {
+    gpu_shared shared;
+    if (!r->device) return err_set("no device: there is no semaphore to share");
+    if (!gpu_share_semaphore(r->device, &shared)) return false;
+    take_shared(&shared, out);
+    return true;
+}
+
+void roil_vulkan_unshare(roil *r, roil_vulkan_shared *shared) {
+    gpu_shared own = {.image = (uint64_t)(uintptr_t)shared->image.image,
+                      .semaphore = (uint64_t)(uintptr_t)shared->semaphore.semaphore,
+                      .inside = shared->inside};
+    gpu_unshare(r->device, &own);
+    *shared = (roil_vulkan_shared){.fd = -1};
 }

@@ -50,7 +50,7 @@ def main():
     jobs = [(path[len("src/"):], C) for path in house.files(top, "src", ".h")]
     jobs += [(path[len("shaders/"):], C) for path in house.files(top, "shaders", "shared.h")]
     shared = set()
-    for header in ("roil.h", "media/vdb.h"):
+    for header in ("roil.h", "roil_vulkan.h", "media/vdb.h"):
         with_included(top, header, shared)
     jobs += [(header, CPP) for header in sorted(shared)]
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:

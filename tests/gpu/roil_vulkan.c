@@ -1,0 +1,338 @@
+// roil on a host's Vulkan device: what it needs, the lock of the queue, the host's depths, formats
+// and layouts, failures, images for other processes, and a limit on the device's memory.
+#pragma GCC diagnostic ignored "-Wunused-function" // an engine uses more of it
+#include "embed/engine_vulkan.h"
+
+#include "roil_test.h"
+#include "roil_vulkan.h"
+
+// A ball of smoke, 4.2 m to 5.8 m before the camera of `straight`.
+static const char ball[] =
+    "local fx = effect { name = 'ball', fps = 10, first = 0 }\n"
+    "local b = sphere { radius = 0.8 }\n"
+    "local smoke = march { density = b * 20, albedo = {0, 0, 0}, emission = b * vec(8, 4, 2),\n"
+    "                      steps = 16 }\n"
+    "fx.camera = camera { eye = function(t) assert(t < 1, 'no time left'); return {0, -5, 0} end,\n"
+    "                     target = {0, 0, 0} }\n"
+    "fx.output = final { smoke }.color\n"
+    "return fx\n";
+
+static roil_vulkan_needs needs;
+static struct { int locked, unlocked; } lock_count;
+
+static void lock(void *user, uint32_t family, uint32_t index) {
+    (void)user;
+    assert_true(family == 0 && index == 0 && lock_count.locked == lock_count.unlocked);
+    lock_count.locked++;
+}
+
+static void unlock(void *user, uint32_t family, uint32_t index) {
+    (void)user, (void)family, (void)index;
+    lock_count.unlocked++;
+}
+
+static roil_vulkan host(void) {
+    return (roil_vulkan){.get = vkGetInstanceProcAddr,
+                         .instance = instance,
+                         .physical = physical,
+                         .device = device,
+                         .features = &needs.features,
+                         .extensions = needs.extensions,
+                         .extension_count = needs.extension_count,
+                         .labels = true,
+                         .lock = lock,
+                         .unlock = unlock};
+}
+
+static roil *open_roil(const char *memory) {
+    const roil_vulkan vulkan = host();
+    return roil_create(&(roil_desc){
+        .vulkan = &vulkan, .home = getenv("ROIL_SOURCE_DIR"), .device_memory = memory});
+}
+
+static roil_view seen;
+
+static roil_effect *open_ball(roil *r) {
+    roil_effect *e = load_text(r, "ball.lua", ball);
+    ok(roil_make_layer(e, NULL));
+    ok(roil_prepare(e, WIDTH, HEIGHT));
+    const float half = tanf(20 * 3.14159265f / 180);
+    roil_view v = {.view = {1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, -5, 1}};
+    v.projection[0] = 1 / (half * WIDTH / HEIGHT);
+    v.projection[5] = -1 / half;
+    v.projection[11] = -1;
+    v.projection[14] = 0.1f; // depths are reversed: 0.1 / m
+    seen = v;
+    ok(roil_set_view(e, &v));
+    return e;
+}
+
+// The depth buffer is one wall, so many metres away.
+static void clear_depth(float metres, uint64_t after) {
+    VkCommandBuffer commands = begin_commands(scene_commands);
+    VkImageSubresourceRange range = {VK_IMAGE_ASPECT_DEPTH_BIT, 0, 1, 0, 1};
+    VkClearDepthStencilValue value = {seen.projection[14] / metres - seen.projection[10], 0};
+    relayout(commands, depth.image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+             VK_IMAGE_ASPECT_DEPTH_BIT);
+    vkCmdClearDepthStencilImage(commands, depth.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &value,
+                                1, &range);
+    submit(commands, 0, after);
+}
+
+static uint64_t now; // of the timeline
+
+static roil_vulkan_image image_of(const image *i, VkImageLayout before, VkImageLayout after) {
+    return (roil_vulkan_image){i->image, hdr, WIDTH, HEIGHT, before, after, false};
+}
+
+// Draws behind a wall into the colour of a layer, which is left in a layout to be copied from.
+static bool draw(roil_effect *e, double frame, float wall) {
+    clear_depth(wall, now + 1);
+    const roil_vulkan_semaphore wait = {timeline, now + 1}, signal = {timeline, now + 2};
+    roil_vulkan_frame f = {.waits = &wait, .wait_count = 1, .signals = &signal, .signal_count = 1};
+    f.depth = image_of(&depth, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                       VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL);
+    f.depth.format = deep;
+    f.images[ROIL_LAYER_COLOR] =
+        image_of(&layers[0][0], VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+    f.images[ROIL_LAYER_TRANSMITTANCE] =
+        image_of(&layers[0][1], VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
+    bool done = roil_vulkan_render(e, frame, &f);
+    now += 2;
+    return done;
+}
+
+// Red in the middle of an image of halves.
+static float middle(VkImage what, VkImageLayout layout) {
+    uint16_t *halves;
+    VkCommandBuffer commands = begin_commands(compose_commands);
+    relayout(commands, what, layout, layout, VK_IMAGE_ASPECT_COLOR_BIT);
+    VkBufferImageCopy region = {.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
+                                .imageExtent = {WIDTH, HEIGHT, 1}};
+    vkCmdCopyImageToBuffer(commands, what, layout, host_buffer, 1, &region);
+    submit(commands, now, now + 1);
+    wait_for(++now);
+    VK(vkMapMemory(device, host_memory, 0, VK_WHOLE_SIZE, 0, (void **)&halves));
+    const float red = from_half(halves[4 * (HEIGHT / 2 * WIDTH + WIDTH / 2)]);
+    vkUnmapMemory(device, host_memory);
+    return red;
+}
+
+static float color_now(void) {
+    return middle(layers[0][0].image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+}
+
+static void what_a_device_lacks_is_named(void **state) {
+    (void)state;
+    roil_vulkan_needs without = needs;
+    without.features.pNext = &without.v11;
+    without.v11.pNext = &without.v12;
+    without.v12.pNext = &without.v13;
+    without.v13.synchronization2 = VK_FALSE;
+    roil_vulkan vulkan = host();
+    vulkan.features = &without.features;
+    expect_error(roil_create(&(roil_desc){.vulkan = &vulkan}), "it lacks synchronization2");
+    // The feature's own struct, of before 1.3, says it as well; and then nothing is missing.
+    VkPhysicalDeviceSynchronization2Features apart = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SYNCHRONIZATION_2_FEATURES,
+        .synchronization2 = VK_TRUE};
+    without.v13.pNext = &apart;
+    roil *r = roil_create(&(roil_desc){.vulkan = &vulkan, .home = getenv("ROIL_SOURCE_DIR")});
+    ok(r);
+    roil_destroy(r);
+    vulkan = host();
+    vulkan.index = 7;
+    expect_error(roil_create(&(roil_desc){.vulkan = &vulkan}), "no queue 7 of family 0");
+    vulkan = host();
+    vulkan.unlock = NULL;
+    expect_error(roil_create(&(roil_desc){.vulkan = &vulkan}), "`lock` and `unlock` go together");
+}
+
+static void walls_hide_what_is_behind_them(void **state) {
+    (void)state;
+    roil *r = open_roil(NULL);
+    ok(r);
+    roil_effect *e = open_ball(r);
+    ok(draw(e, 0, 9));
+    const float whole = color_now();
+    ok(draw(e, 1, 4.3f));
+    const float part = color_now();
+    ok(draw(e, 2, 4));
+    assert_true(whole > 0.3f);
+    assert_true(part > 0.05f * whole && part < 0.95f * whole);
+    assert_true(color_now() == 0);
+    seen.projection[10] = -20 / 19.9f; // ordinary, from 0.1 m to 20 m
+    seen.projection[14] = -2 / 19.9f;
+    ok(roil_set_view(e, &seen));
+    ok(draw(e, 0, 4.3f));
+    assert_true(fabsf(color_now() - part) < 0.02f * whole);
+    ok(draw(e, 1, 4));
+    assert_true(color_now() == 0);
+    assert_true(lock_count.locked > 3 && lock_count.locked == lock_count.unlocked);
+    roil_unload(e);
+    roil_destroy(r);
+}
+
+// A script's mistake in a frame: the images come back all the same, and nobody waits for ever.
+static void what_fails_is_given_back(void **state) {
+    (void)state;
+    roil *r = open_roil(NULL);
+    ok(r);
+    roil_effect *e = open_ball(r);
+    expect_error(draw(e, 12, 9), "no time left");
+    color_now(); // in the layout that it was to have, once the timeline has come there
+    ok(draw(e, 0, 9));
+    assert_true(color_now() > 0.3f);
+    roil_vulkan_frame f = {0};
+    f.images[ROIL_LAYER_MOTION] =
+        image_of(&layers[0][0], VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
+    expect_error(roil_vulkan_render(e, 0, &f), "roil_layer_desc did not ask for it");
+    f = (roil_vulkan_frame){
+        .images[ROIL_LAYER_COLOR] =
+            image_of(&layers[0][0], VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_UNDEFINED)};
+    expect_error(roil_vulkan_render(e, 0, &f), "a layout that no image can be given");
+    f = (roil_vulkan_frame){.wait_count = 9};
+    expect_error(roil_vulkan_render(e, 0, &f), "9 semaphores to wait for");
+    roil_unload(e);
+    roil_destroy(r);
+}
+
+// ---- other processes --------------------------------------------------------------------------
+
+static VkImage import_image(const roil_vulkan_shared *from, VkDeviceMemory *memory) {
+    VkImage out;
+    VkExternalMemoryImageCreateInfo by = {
+        .sType = VK_STRUCTURE_TYPE_EXTERNAL_MEMORY_IMAGE_CREATE_INFO,
+        .handleTypes = VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT};
+    VkImageCreateInfo info = {.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
+                              .pNext = &by,
+                              .imageType = VK_IMAGE_TYPE_2D,
+                              .format = from->image.format,
+                              .extent = {from->image.width, from->image.height, 1},
+                              .mipLevels = 1,
+                              .arrayLayers = 1,
+                              .samples = VK_SAMPLE_COUNT_1_BIT,
+                              .usage = VK_IMAGE_USAGE_TRANSFER_DST_BIT |
+                                       VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
+                                       VK_IMAGE_USAGE_SAMPLED_BIT};
+    VK(vkCreateImage(device, &info, NULL, &out));
+    VkMemoryDedicatedAllocateInfo own = {.sType = VK_STRUCTURE_TYPE_MEMORY_DEDICATED_ALLOCATE_INFO,
+                                         .image = out};
+    VkImportMemoryFdInfoKHR fd = {.sType = VK_STRUCTURE_TYPE_IMPORT_MEMORY_FD_INFO_KHR,
+                                  .pNext = &own,
+                                  .handleType = VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT,
+                                  .fd = from->fd};
+    VkMemoryAllocateInfo allocation = {.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+                                       .pNext = &fd,
+                                       .allocationSize = from->size,
+                                       .memoryTypeIndex = from->memory_type};
+    VK(vkAllocateMemory(device, &allocation, NULL, memory));
+    VK(vkBindImageMemory(device, out, *memory, 0));
+    return out;
+}
+
+// The test's device stands for another process: roil has a device of its own here.
+static void an_image_is_opened_by_another_device(void **state) {
+    (void)state;
+    roil *r = roil_create(&(roil_desc){.home = getenv("ROIL_SOURCE_DIR"), .validate = true});
+    ok(r);
+    roil_effect *e = open_ball(r);
+    roil_vulkan_shared shared, semaphore;
+    VkDeviceMemory memory;
+    if (!roil_vulkan_share_image(r, hdr, WIDTH, HEIGHT, &shared)) {
+        expect_error(false, "cannot share images");
+    } else {
+        VkImage opened = import_image(&shared, &memory);
+        relayout(begin_commands(scene_commands), opened, VK_IMAGE_LAYOUT_UNDEFINED,
+                 VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_ASPECT_COLOR_BIT);
+        submit(scene_commands, 0, ++now);
+        wait_for(now);
+        roil_vulkan_frame f = {.images[ROIL_LAYER_COLOR] = shared.image};
+        ok(roil_vulkan_render(e, 0, &f));
+        roil_readback *done = roil_read_begin(e, NULL); // waits where there is no semaphore
+        ok(done);
+        float *all = mem_alloc(sizeof *all * 4 * WIDTH * HEIGHT);
+        ok(roil_read_end(done, all));
+        const float red = all[4 * (HEIGHT / 2 * WIDTH + WIDTH / 2)];
+        assert_true(red > 0.3f && middle(opened, VK_IMAGE_LAYOUT_GENERAL) == red);
+        mem_free(all);
+        vkDestroyImage(device, opened, NULL);
+        vkFreeMemory(device, memory, NULL);
+        roil_vulkan_unshare(r, &shared);
+    }
+    expect_error(roil_vulkan_share_image(r, hdr, 0, 1, &shared), "a shared image of 0 x 1");
+    if (roil_vulkan_share_semaphore(r, &semaphore)) {
+        assert_true(semaphore.fd >= 0);
+        close(semaphore.fd);
+        roil_vulkan_unshare(r, &semaphore);
+    } else { // as Mesa's lavapipe
+        expect_error(false, "cannot share");
+    }
+    roil_unload(e);
+    assert_int_equal(roil_validation_messages(r), 0);
+    roil_destroy(r);
+}
+
+// ---- memory -----------------------------------------------------------------------------------
+
+static void a_limit_on_memory_is_kept(void **state) {
+    (void)state;
+    roil *r = open_roil("1M");
+    ok(r);
+    roil_effect *e = load_text(r, "ball.lua", ball);
+    ok(roil_make_layer(e, NULL));
+    expect_error(roil_prepare(e, 1024, 1024), "`device_memory` of roil_desc sets another limit");
+    roil_unload(e);
+    roil_destroy(r);
+    r = open_roil("24M"); // another roil has another limit
+    ok(r);
+    e = open_ball(r);
+    ok(draw(e, 0, 9));
+    assert_true(color_now() > 0.3f);
+    roil_memory m = roil_get_memory(r);
+    assert_int_equal(m.limit, 24 << 20);
+    assert_true(m.sum > 0 && m.sum <= m.limit && m.reserved <= m.limit);
+    roil_unload(e);
+    roil_destroy(r);
+    expect_error(open_roil("much"), "an amount of memory 'much'");
+}
+
+static int open_host(void **state) {
+    *state = NULL;
+    open_instance();
+    ok(roil_vulkan_find_needs(vkGetInstanceProcAddr, instance, physical, &needs));
+    float priority = 1;
+    VkDeviceQueueCreateInfo queues = {.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
+                                      .queueCount = 1,
+                                      .pQueuePriorities = &priority};
+    VkDeviceCreateInfo info = {.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
+                               .pNext = &needs.features,
+                               .queueCreateInfoCount = 1,
+                               .pQueueCreateInfos = &queues,
+                               .enabledExtensionCount = needs.extension_count,
+                               .ppEnabledExtensionNames = needs.extensions};
+    VK(vkCreateDevice(physical, &info, NULL, &device));
+    vkGetDeviceQueue(device, 0, 0, &queue);
+    open_engine();
+    const char *temporary = getenv("TMPDIR");
+    snprintf(test_folder, sizeof test_folder, "%s/roil-test-XXXXXX",
+             temporary ? temporary : "/tmp");
+    return mkdtemp(test_folder) ? 0 : 1;
+}
+
+int main(void) {
+    static const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_a_device_lacks_is_named),
+        cmocka_unit_test(walls_hide_what_is_behind_them),
+        cmocka_unit_test(what_fails_is_given_back),
+        cmocka_unit_test(an_image_is_opened_by_another_device),
+        cmocka_unit_test(a_limit_on_memory_is_kept),
+    };
+    gpu_test_need_device();
+    if (getenv("ROIL_TEST")) cmocka_set_test_filter(getenv("ROIL_TEST"));
+    int failed = cmocka_run_group_tests(tests, open_host, NULL);
+    if (!failed) close_engine();
+    char command[300];
+    snprintf(command, sizeof command, "rm -r '%s'", test_folder);
+    return failed + complaints + (system(command) != 0);
+}
