@@ -42,7 +42,11 @@ struct frame_block {
                        // of the middle of the picture and above it, in halves of it; zw: by how much
                        // its jitter has moved the picture since the last frame, to the right and
                        // down, in parts of it
-    SHARED_VEC4 time;  // seconds, seconds since the last frame, number of the frame shown, 0
+    SHARED_VEC4 sight; // xy: by how much the slopes of lines of sight (to the right, up) are moved
+                       // in this picture, which view, view_inverse and eye have in them; z: radius
+                       // of the camera's lens (m), 0: all is sharp; w: depth that is sharp (m)
+    SHARED_VEC4 time;  // seconds, seconds since the last frame, number of the frame shown, which of
+                       // the pictures of a shutter this is, from 1; 0: there is but one
     SHARED_UVEC4 size; // output width, height, frames drawn so far (for noise), seed
     SHARED_VEC4 sun_direction; // xyz: towards the sun, unit; w: angular radius of the moon that is
                                // seen there, radians

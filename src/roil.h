@@ -195,6 +195,13 @@ bool roil_keep(roil_effect *e, const char *image);
 // Keeps this image and no other. NULL: none.
 void roil_keep_only(roil_effect *e, const char *image);
 
+// Averages so many pictures of each frame that roil_render draws, in linear light before the tone
+// map: 1 to 65536, each with the camera moved by a part of a pixel and within its lens, at moments
+// spread over `shutter` frames, 0 to 1, from the frame on. What a simulation, a sequence with
+// `blend`, a curve or a function moves is blurred by its way; what a script sets frame by frame is
+// not. Call it once, before roil_prepare. False with a message, as for an effect with a reference.
+bool roil_set_samples(roil_effect *e, uint32_t samples, double shutter);
+
 // Compiles the effect and allocates its images for a picture size in pixels, 1 to 16384 each. Call
 // it again to change the size. Pictures rendered before cannot be read any more.
 bool roil_prepare(roil_effect *e, uint32_t width, uint32_t height);

@@ -16,3 +16,8 @@ vec2 frame_seen(vec2 at, float deep) {
 
 // Tangents of the angles to the sides of what the camera sees, from what lies straight ahead: of the farther one.
 vec2 frame_across() { return frame.lens.xy * (1.0 + abs(frame.shift.xy)); }
+
+// The same where the camera is not moved by a part of a pixel.
+vec3 frame_ray_still(vec2 uv) {
+    return frame_ray(uv) - (frame.view_inverse * vec4(frame.sight.xy, 0.0, 0.0)).xyz;
+}

@@ -89,7 +89,7 @@ bool app_may_write_here(const char *path);
 // Quotes a text for a shell where necessary, so that it is never taken as an option.
 char *app_quoted(arena *memory, const char *text);
 
-bool app_parse_samples(const char *text, uint32_t *out); // samples per pixel, 1 to 65536
+bool app_parse_samples(const char *option, const char *text, uint32_t *out); // 1 to 65536 a pixel
 
 // ---- parts of the work, for machines that share it --------------------------------------------
 

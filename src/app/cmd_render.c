@@ -42,6 +42,8 @@ typedef struct job {
     size_t left_out;        // frames that were there
     bool all;               // frames, as nobody says which
     uint32_t reference;     // samples a pixel; 0: as the effect draws it
+    uint32_t samples;       // pictures that a frame is averaged of; 0: it is not
+    double shutter;         // frames
     double fps;
     char default_output[PATH_CAP];
 } job;
@@ -55,6 +57,7 @@ enum {
     OPTION_DUMP,
     OPTION_PRESET,
     OPTION_REFERENCE,
+    OPTION_SAMPLES,
     OPTION_EVENT,
     OPTION_SHARD,
 };
@@ -82,7 +85,9 @@ static bool take_option(job *j, poptContext context, int option) {
     case OPTION_SET:
         return app_add_set(&j->settings, text);
     case OPTION_REFERENCE:
-        return app_parse_samples(text, &j->reference);
+        return app_parse_samples("--reference", text, &j->reference);
+    case OPTION_SAMPLES:
+        return app_parse_samples("--samples", text, &j->samples);
     case OPTION_SHARD:
         return app_parse_shard(text, &j->shard, &j->shards);
     case OPTION_PRESET:
@@ -175,6 +180,14 @@ static bool render_parse(job *j, int argc, const char **argv, poptContext *conte
          "leave out frames whose pictures are there, and whole", NULL},
         {"reference", '\0', POPT_ARG_STRING, NULL, OPTION_REFERENCE,
          "replace each pass march by a path tracer with so many samples per pixel", "SPP"},
+        {"samples", '\0', POPT_ARG_STRING, NULL, OPTION_SAMPLES,
+         "average N pictures of each frame, in linear light, for smooth edges, motion blur and a "
+         "lens",
+         "N"},
+        {"shutter", '\0', POPT_ARG_DOUBLE, &j->shutter, 0,
+         "frames that these are spread over, 0 to 1, from the frame on (default: 0.5, a shutter "
+         "of 180 degrees)",
+         "FRAMES"},
         {"stats", '\0', POPT_ARG_STRING, &j->stats, 0,
          "write GPU milliseconds by pass, samples taken and the device as JSON", "FILE.json"},
         {"dump-pass", '\0', POPT_ARG_STRING, NULL, OPTION_DUMP,
@@ -207,6 +220,9 @@ static bool render_parse(job *j, int argc, const char **argv, poptContext *conte
     if (more) return err_set("'%s': one effect at a time", more);
     if (j->warmup < 0 || j->warmup > 100000)
         return err_set("--warmup %d; accepted: 0 to 100000 frames", j->warmup);
+    if (!(j->shutter >= 0 && j->shutter <= 1))
+        return err_set("--shutter %g; accepted: 0 to 1 frames", j->shutter);
+    if (j->samples && j->reference) return err_set("--samples and --reference exclude each other");
     if (j->alpha && j->premultiplied)
         return err_set("--alpha is straight, --premultiplied is not: one of the two");
     if (j->warmup && j->restore) return err_set("--warmup and --restore exclude each other");
@@ -325,6 +341,7 @@ static bool open_outputs(job *j, roil_effect *e) {
         output *o = &j->outputs[i];
         if (o->image && !roil_keep(e, o->image)) return false;
     }
+    if (j->samples && !roil_set_samples(e, j->samples, j->shutter)) return false;
     if (!roil_prepare(e, j->width, j->height) || (j->restore && !render_restore(j, e)))
         return false;
     if (j->simulates) roil_only_simulate(e);
@@ -482,7 +499,7 @@ static int render_run(job *j) {
 }
 
 int cmd_render(int argc, const char **argv) {
-    job j = {.frames.step = 1};
+    job j = {.frames.step = 1, .shutter = 0.5};
     arena memory = {0};
     poptContext context;
     argv = join_dump(&argc, argv, &memory);

@@ -55,7 +55,7 @@ static bool take_option(tune_options *o, poptContext context, int option) {
     case OPTION_AXES:
         return add_axes(o, text);
     case OPTION_REFERENCE:
-        return app_parse_samples(text, &o->order.samples);
+        return app_parse_samples("--reference", text, &o->order.samples);
     }
     return true;
 }

@@ -89,11 +89,11 @@ bool app_parse_size(const char *text, uint32_t *width, uint32_t *height) {
     return err_set("size '%s'; accepted: WIDTHxHEIGHT, as 960x540, up to 16384", text);
 }
 
-bool app_parse_samples(const char *text, uint32_t *out) {
+bool app_parse_samples(const char *option, const char *text, uint32_t *out) {
     char *end;
     long samples = strtol(text, &end, 10);
     if (end == text || *end || samples < 1 || samples > 65536)
-        return err_set("--reference '%s'; accepted: 1 to 65536 samples a pixel", text);
+        return err_set("%s '%s'; accepted: 1 to 65536 samples a pixel", option, text);
     *out = (uint32_t)samples;
     return true;
 }

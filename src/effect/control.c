@@ -338,7 +338,7 @@ bool effect_apply_settings(void *user, pass *p) {
 }
 
 bool effect_check_settings(effect *e) {
-    if (!scene_control_add_all(e) || !events_add_control(e)) return false;
+    if (!effect_antialias(e) || !scene_control_add_all(e) || !events_add_control(e)) return false;
     for (size_t i = 0; i < e->setting_count; i++)
         if (!e->applied[i] && !e->settings[i].initial) return unknown(e, e->settings[i].name);
     return true;

@@ -212,6 +212,11 @@ void effect_around_frame(effect *e, bool (*begin)(void *user), bool (*end)(void 
 // Makes the effect draw only kept images and no pictures. Call it before the effect is built.
 void effect_skip_pictures(effect *e);
 
+// Smooths edges over frames, where `on` and a setting of "effect.antialias" say so: the camera is
+// moved by a part of a pixel in each frame after the first, and a pass `accumulate`, called
+// "antialias", gathers the picture that the last `final` takes. With a reference, which has samples
+// of its own, it does nothing. False with a message when that setting is wrong.
+bool effect_set_antialias(effect *e, bool on);
 bool effect_set_output(effect *e, graph_image image); // the picture, display-referred
 bool effect_set_linear(effect *e, graph_image image); // scene-linear, for EXR
 bool effect_set_depth(effect *e, graph_image image);  // linear depth in metres, for EXR
@@ -382,6 +387,12 @@ bool effect_rehearse(effect *e, double frame);
 // continue; decoded grids; meshes. `from` can then only be destroyed. On failure `from` is
 // unchanged.
 bool effect_adopt(effect *e, effect *from, uint32_t width, uint32_t height);
+// Averages so many pictures of each frame, at moments that are evenly spread over the part
+// `shutter` of a frame after it, each with a camera that is moved by a part of a pixel and within
+// its lens. What comes before the tone map is averaged (each picture that a pass `final` takes, and
+// the output and `linear` where none makes them), in linear light. 1 to 65536 of them, 0 to 1 of a
+// frame. Call it after the script has run and before the effect is built.
+bool effect_set_samples(effect *e, uint32_t samples, double shutter);
 // From now on frames bring what simulates to their time, and draw nothing that it does not need.
 void effect_only_simulate(effect *e);
 // How many frames were drawn in a row before the last, if pictures depend on that.

@@ -19,6 +19,14 @@ bool effect_evaluate(effect *e, double frame, gpu *device, bool again);
 void effect_reset_instances(effect *e); // to their initial state, since time has gone back
 // Simulates up to the frame. `*again`: `update` need not run for it.
 bool effect_simulate(effect *e, double frame, bool *again);
+// Adds the times of a submission of this frame to those ahead of the last.
+void effect_add_times(effect *e, uint64_t number);
+
+// samples.c: a frame as several moments that are averaged, and cameras that are moved for it.
+uint32_t effect_moments(const effect *e);            // of a frame, at least 1
+double effect_moment(const effect *e, double frame); // the time of the present one, in frames
+bool effect_antialias(effect *e);                    // where it is wanted; see samples.c
+void effect_move_sight(effect *e, double frame);     // in e->frame, which is evaluated
 
 // ---- states -----------------------------------------------------------------------------------
 
@@ -177,11 +185,18 @@ struct effect {
     struct frame_block frame;
     struct light_block lights;
     uint32_t width, height;
-    uint32_t counter;   // frames rendered so far
-    double last_frame;  // number of the frame rendered last
-    double updated;     // frame that `update` ran for last; NAN: none
-    double rendered_at; // clock_seconds at its end
-    bool behind;        // simulations have not reached the frame rendered last
+    uint32_t counter;            // frames rendered so far
+    double last_frame;           // number of the frame rendered last
+    double last_moment;          // the moment of it that was drawn last, in frames
+    uint32_t samples;            // moments that a frame is averaged of (effect_set_samples); 0: one
+    uint32_t moment;             // which of these is drawn, from 0
+    double shutter;              // frames that they are spread over
+    bool wants_antialias;        // effect_set_antialias
+    bool antialiased;            // effect_antialias
+    graph_image antialias_depth; // that it gathers by; zero: none
+    double updated;              // frame that `update` ran for last; NAN: none
+    double rendered_at;          // clock_seconds at its end
+    bool behind;                 // simulations have not reached the frame rendered last
     uint64_t
         ahead; // the submission simulated last before the frame; 0: none, or its times are known
     gpu_pass_time *ahead_times; // of those before it, by label

@@ -238,7 +238,7 @@ static bool update_grids(effect *e, gpu *device) {
 // Without a device grids only know their bounds.
 bool effect_evaluate(effect *e, double frame, gpu *device, bool again) {
     double time = (frame - e->first) / e->fps;
-    double dt = e->counter ? (frame - e->last_frame) / e->fps : 0;
+    double dt = e->counter ? (frame - e->last_moment) / e->fps : 0;
     if (!again && !run_clocks(e, frame)) return false;
     e->context.time = time;
     if (device && e->hooks.renew) e->hooks.renew(e->hooks.user);
@@ -252,6 +252,7 @@ bool effect_evaluate(effect *e, double frame, gpu *device, bool again) {
     }
     e->frame.time = (shared_vec4){{(float)time, (float)dt, (float)frame, 0}};
     e->frame.size = (shared_uvec4){{e->width, e->height, (uint32_t)llrint(frame), e->seed}};
+    effect_move_sight(e, frame);
     if (!update_grids(e, device)) return false;
     for (size_t i = 0; device && i < e->instances_count; i++)
         if (!scene_instances_upload(e->instances[i], device)) return false;
@@ -280,16 +281,15 @@ static void forget(effect *e) { // the frames before
     e->has_last = false;
 }
 
-uint64_t effect_render(effect *e, double frame, bool jump) {
-    if (e->counter && !jump && frame != e->last_frame + 1) forget(e);
+// Draws a moment of a frame. Of several moments each goes on where the one before it was.
+static uint64_t draw(effect *e, double moment) {
     bool again;
-    if (e->never_waits && !e->stepped && !e->behind) effect_keep_snapshot(e, e->last_frame);
-    if (!effect_simulate(e, frame, &again)) return 0;
+    if (!effect_simulate(e, moment, &again)) return 0;
     uint64_t number = gpu_frame_begin(e->device);
     if (!number) return 0;
     e->host.fresh = !e->has_last;
     bool done = (!e->given.begin || e->given.begin(e->given.user)) &&
-                effect_evaluate(e, frame, e->device, again) &&
+                effect_evaluate(e, moment, e->device, again) &&
                 scene_bvh_update(e->host.bvh, e->device, &e->context) &&
                 (e->only_simulates ? graph_execute_simulation(e->graph, e->device)
                                    : graph_execute(e->graph, e->device));
@@ -300,11 +300,26 @@ uint64_t effect_render(effect *e, double frame, bool jump) {
         forget(e);
         return 0;
     }
-    e->counter++;
-    e->in_a_row = e->has_last ? e->in_a_row + 1 : 0;
     e->has_last = true;
     e->last_clip = e->clip;
     memcpy(e->last_jitter, e->jitter, sizeof e->jitter);
+    e->last_moment = moment;
+    return number;
+}
+
+uint64_t effect_render(effect *e, double frame, bool jump) {
+    if (e->counter && !jump && frame != e->last_frame + 1) forget(e);
+    if (e->never_waits && !e->stepped && !e->behind) effect_keep_snapshot(e, e->last_frame);
+    const bool follows = e->has_last;
+    const uint32_t moments = e->only_simulates ? 1 : effect_moments(e);
+    uint64_t number = 0;
+    for (e->moment = 0; e->moment < moments; e->moment++) {
+        if (e->moment > 0) effect_add_times(e, number);
+        number = draw(e, effect_moment(e, frame));
+        if (!number) return 0;
+    }
+    e->counter++;
+    e->in_a_row = follows ? e->in_a_row + 1 : 0;
     e->last_frame = frame;
     e->rendered_at = clock_seconds();
     return number;
@@ -383,6 +398,8 @@ bool effect_adopt(effect *e, effect *from, uint32_t width, uint32_t height) {
     e->height = height;
     e->counter = from->counter;
     e->last_frame = from->last_frame;
+    e->last_moment = from->last_moment;
+    e->in_a_row = from->in_a_row;
     e->updated = from->updated;
     e->has_last = from->has_last;
     e->last_clip = from->last_clip;

@@ -126,6 +126,11 @@ size_t effect_times_ahead(effect *e, gpu_pass_time *out, size_t capacity) {
     return e->ahead_count < capacity ? e->ahead_count : capacity;
 }
 
+void effect_add_times(effect *e, uint64_t number) {
+    collect_times(e);
+    e->ahead = number;
+}
+
 // A live window does not wait, and its times are those of the picture alone.
 static bool run_frame(effect *e, double frame, bool again) {
     if (!gpu_frame_begin(e->device)) return false;
@@ -166,7 +171,7 @@ static bool simulate_until(effect *e, double frame, bool *again) {
 
 bool effect_simulate(effect *e, double frame, bool *again) {
     *again = e->behind = e->host.hold = false;
-    e->ahead = e->ahead_count = 0;
+    if (e->moment == 0) e->ahead = e->ahead_count = 0;
     if (!graph_simulates(e->graph)) return true;
     e->host.brief = e->never_waits;
     turn_to(e, frame);

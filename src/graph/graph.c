@@ -157,6 +157,16 @@ bool graph_add_pass(graph *g, const graph_pass_desc *desc) {
     return true;
 }
 
+void graph_redirect(graph *g, graph_image from, graph_image to, const char *but) {
+    const uint32_t old = index_of(g, from), new = index_of(g, to);
+    for (size_t i = 0; i < g->pass_count; i++) {
+        graph_node_pass *pass = &g->passes[i];
+        for (size_t k = 0; k < pass->read_count && strcmp(pass->name, but) != 0; k++)
+            if (pass->reads[k] == old) pass->reads[k] = new;
+    }
+    make_stale(g);
+}
+
 // ---- questions --------------------------------------------------------------------------------
 
 static const graph_slot *slot_of(const graph *g, graph_image image) {

@@ -49,6 +49,8 @@ graph_image graph_add_image(graph *g, const graph_image_desc *desc);
 // first frame and after a change of size. Further calls return the same handle.
 graph_image graph_add_history(graph *g, graph_image image);
 bool graph_add_pass(graph *g, const graph_pass_desc *desc);
+// Lets every pass that reads `from`, but for the pass `but`, read `to` instead.
+void graph_redirect(graph *g, graph_image from, graph_image to, const char *but);
 void graph_add_output(graph *g, graph_image image); // its content is needed after execution
 void graph_remove_output(graph *g, graph_image image);
 

@@ -176,6 +176,39 @@ pass *pass_writer(const pass_host *host, graph_image image) {
     return NULL;
 }
 
+void pass_redirect(pass_host *host, graph_image from, graph_image to, const pass *but) {
+    for (size_t i = 0; i < host->declared_count; i++) {
+        pass *p = host->declared[i];
+        for (size_t k = 0; k < p->face->image_count && p != but; k++)
+            if (!p->face->images[k].output && p->images[k].id == from.id) p->images[k] = to;
+    }
+    graph_redirect(host->graph, from, to, but->label);
+}
+
+// `seen`: passes of the host that were looked at.
+static bool follows(const pass *p, graph_image image, bool *seen) {
+    const pass_host *host = p->host;
+    for (size_t i = 0; i < p->face->image_count; i++) {
+        const shader_image *declared = &p->face->images[i];
+        if (declared->output || declared->history || !p->images[i].id) continue;
+        if (p->images[i].id == image.id) return true;
+        const pass *writer = pass_writer(host, p->images[i]);
+        size_t k = 0;
+        while (k < host->declared_count && host->declared[k] != writer) k++;
+        if (k == host->declared_count || seen[k]) continue;
+        seen[k] = true;
+        if (follows(writer, image, seen)) return true;
+    }
+    return false;
+}
+
+bool pass_follows(const pass *p, graph_image image) {
+    bool *seen = mem_alloc((p->host->declared_count + 1) * sizeof *seen);
+    bool found = follows(p, image, seen);
+    mem_free(seen);
+    return found;
+}
+
 bool pass_declare(pass *p) {
     const shader_interface *face = p->face;
     pass_host *host = p->host;

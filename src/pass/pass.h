@@ -184,6 +184,10 @@ void pass_add_source(pass *p, pass *source);
 void pass_add_uniforms_of(pass *p, pass *source);
 // Returns the pass that makes an image; NULL: none, or one declared later.
 pass *pass_writer(const pass_host *host, graph_image image);
+// Lets all passes but `but` read one image instead of another, after pass_declare.
+void pass_redirect(pass_host *host, graph_image from, graph_image to, const pass *but);
+// Returns whether a pass reads an image, or one that was made of it. Histories do not count.
+bool pass_follows(const pass *p, graph_image image);
 void pass_set_bake(pass *p, field_grid *grid); // bake only: the grid it fills
 // Tells what `name` may be set as, for the generic setter of Lua and --set.
 typedef enum pass_key { PASS_UNKNOWN, PASS_UNIFORM, PASS_OPTION, PASS_FIELD, PASS_IMAGE } pass_key;

@@ -74,6 +74,12 @@ static const pass_type final_type = {
     .shader = "pass/picture/final.comp",
 };
 
+static const pass_type mean_type = {
+    .name = "mean",
+    .shader = "pass/picture/mean.comp",
+    .constructed = true,
+};
+
 static const pass_type *const types[] = {
     &geometry_type,
     &shade_type,
@@ -95,6 +101,7 @@ static const pass_type *const types[] = {
     &bloom_type,
     &final_type,
     &accumulate_type,
+    &mean_type,
     &meter_type,
     &bake_type,
     &slices_templates_type,

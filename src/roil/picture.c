@@ -301,14 +301,19 @@ static void free_picture(void *user) {
     mem_free(p);
 }
 
+enum { DRAWING_OPTIONS = 4 };
+
 // Adds the options of `roil render` that a picture depends on and its saving does not say.
 static size_t describe_drawing(const roil_effect *e, uint32_t before, const char **options,
-                               char reference[32], char warmup[32]) {
+                               char texts[DRAWING_OPTIONS][48]) {
     size_t count = 0;
-    snprintf(reference, 32, "--reference=%u", e->owner->reference);
-    snprintf(warmup, 32, "--warmup=%u", before);
-    if (e->owner->reference) options[count++] = reference;
-    if (before) options[count++] = warmup;
+    snprintf(texts[0], sizeof *texts, "--reference=%u", e->owner->reference);
+    snprintf(texts[1], sizeof *texts, "--warmup=%u", before);
+    snprintf(texts[2], sizeof *texts, "--samples=%u", e->averaged);
+    snprintf(texts[3], sizeof *texts, "--shutter=%.17g", e->shutter);
+    if (e->owner->reference) options[count++] = texts[0];
+    if (before) options[count++] = texts[1];
+    for (int i = 2; i < DRAWING_OPTIONS && e->averaged; i++) options[count++] = texts[i];
     return count;
 }
 
@@ -323,8 +328,8 @@ static bool take_depth(roil_effect *e, picture *p) {
 }
 
 static char *describe_picture(roil_effect *e, const roil_save_options *o) {
-    char dump[128], reference[32], warmup[32];
-    const char *options[9];
+    char dump[128], drawing[DRAWING_OPTIONS][48];
+    const char *options[7 + DRAWING_OPTIONS];
     size_t count = 0;
     if (o->alpha) options[count++] = "--alpha";
     if (o->premultiplied) options[count++] = "--premultiplied";
@@ -333,8 +338,7 @@ static char *describe_picture(roil_effect *e, const roil_save_options *o) {
     if (o->shown) options[count++] = "--shown";
     if (o->image && snprintf(dump, sizeof dump, "--dump-pass=%s", o->image) < (int)sizeof dump)
         options[count++] = dump;
-    count +=
-        describe_drawing(e, effect_frames_before(e->effect), options + count, reference, warmup);
+    count += describe_drawing(e, effect_frames_before(e->effect), options + count, drawing);
     options[count] = NULL;
     return roil_describe(
         e,
@@ -494,10 +498,10 @@ bool roil_video_add(roil_video *v) {
 static char *describe_film(const roil_video *v) {
     const double step = v->count > 1 ? v->second - v->first : 1;
     if (!v->count || v->last != v->first + step * (double)(v->count - 1)) return NULL;
-    char fps[48], reference[32], warmup[32];
-    const char *options[4] = {fps};
+    char fps[48], drawing[DRAWING_OPTIONS][48];
+    const char *options[2 + DRAWING_OPTIONS] = {fps};
     snprintf(fps, sizeof fps, "--fps=%.17g", v->fps);
-    size_t count = 1 + describe_drawing(v->effect, v->before, options + 1, reference, warmup);
+    size_t count = 1 + describe_drawing(v->effect, v->before, options + 1, drawing);
     options[count] = NULL;
     return roil_describe(
         v->effect,

@@ -327,6 +327,16 @@ graph_image roil_find_image(roil_effect *e, const char *name) {
     return found;
 }
 
+bool roil_set_samples(roil_effect *e, uint32_t samples, double shutter) {
+    if (samples < 1 || samples > 65536 || !(shutter >= 0 && shutter <= 1))
+        return err_set("%u samples over %g frames; accepted: 1 to 65536, 0 to 1", samples, shutter);
+    if (e->averaged) return err_set("the samples of a frame are set once");
+    if (!effect_set_samples(e->effect, samples, shutter)) return false;
+    e->averaged = samples;
+    e->shutter = shutter;
+    return true;
+}
+
 bool roil_prepare(roil_effect *e, uint32_t width, uint32_t height) {
     if (width < 1 || height < 1 || width > 16384 || height > 16384)
         return err_set("picture size %u x %u; accepted: 1 to 16384 each", width, height);

@@ -27,10 +27,12 @@ struct roil_effect {
     roil *owner;
     effect *effect;
     uint32_t width, height;
-    uint64_t frame; // number of the last GPU frame; 0: none
-    double speed;   // of simulations in the last frame that had steps (roil_readouts)
-    double shown;   // number of the effect's frame that is shown
-    char **kept;    // names given to roil_keep, for roil_apply_kept
+    uint64_t frame;    // number of the last GPU frame; 0: none
+    double speed;      // of simulations in the last frame that had steps (roil_readouts)
+    uint32_t averaged; // roil_set_samples; 0: it was not called
+    double shutter;    // the same
+    double shown;      // number of the effect's frame that is shown
+    char **kept;       // names given to roil_keep, for roil_apply_kept
     size_t kept_count, kept_capacity;
     template_file **templates; // that were read so far
     size_t template_count, template_capacity;

@@ -85,12 +85,14 @@ static float step_back(float height, vec3 eye, const vec3 target, const vec3 for
 static bool fill_camera(const scene_camera *c, const field_context *context, float aspect,
                         struct frame_block *out) {
     vec3 eye, target, forward, up = {0, 0, 1};
-    float fov, near, far, height;
+    float fov, near, far, height, aperture, focus;
     if (!scene_camera_eye(c, context, eye, target) ||
         !scene_evaluate_scalar(c->fov, context, &fov) ||
         !scene_evaluate_scalar(c->near, context, &near) ||
         !scene_evaluate_scalar(c->far, context, &far) ||
-        !scene_evaluate_scalar(c->orthographic, context, &height))
+        !scene_evaluate_scalar(c->orthographic, context, &height) ||
+        !scene_evaluate_scalar(c->aperture, context, &aperture) ||
+        !scene_evaluate_scalar(c->focus, context, &focus))
         return false;
     fov = clampf(fov, 1, 170);
     near = fmaxf(near, 1e-4f);
@@ -98,6 +100,7 @@ static bool fill_camera(const scene_camera *c, const field_context *context, flo
     glm_vec3_sub(target, eye, forward);
     if (glm_vec3_norm(forward) < 1e-6f) glm_vec3_copy((vec3){0, 1, 0}, forward);
     glm_vec3_normalize(forward);
+    if (!(focus > 0)) focus = glm_vec3_distance(eye, target);
     const float moved = step_back(height, eye, target, forward, &fov, &near, &far);
     // Straight up or down has no up of its own; an orbit, which ends at 89.9 degrees, keeps its
     // yaw.
@@ -123,7 +126,33 @@ static bool fill_camera(const scene_camera *c, const field_context *context, flo
     out->eye = (shared_vec4){{eye[0], eye[1], eye[2], moved}};
     out->lens = (shared_vec4){{half * aspect, half, near, far}};
     out->shift = (shared_vec4){0};
+    out->sight =
+        (shared_vec4){{0, 0, moved > 0 ? 0 : 0.5f * fmaxf(aperture, 0), fmaxf(focus, near)}};
     return true;
+}
+
+// What moves lines of sight by the same slope everywhere is a shear of the camera's space: with it
+// in `view`, all that projects places and all that sends rays are moved alike.
+void scene_move_sight(struct frame_block *frame, const float picture[2], const float lens[2]) {
+    const float radius = frame->sight.v[2], focus = frame->sight.v[3];
+    mat4 view, inverse, shear = GLM_MAT4_IDENTITY_INIT;
+    memcpy(inverse, frame->view_inverse.m, sizeof inverse);
+    float slope[2];
+    for (int i = 0; i < 2; i++) {
+        const float across = radius * lens[i];
+        slope[i] = (i == 0 ? 2 : -2) * picture[i] * frame->lens.v[i] - across / focus;
+        glm_vec3_muladds(inverse[i], across, inverse[3]);
+    }
+    glm_mat4_copy(inverse, view);
+    glm_inv_tr(view);
+    for (int i = 0; i < 2; i++) shear[2][i] = slope[i];
+    glm_mat4_mul(shear, view, view);
+    for (int i = 0; i < 2; i++) shear[2][i] = -slope[i];
+    glm_mat4_mul(inverse, shear, inverse);
+    memcpy(frame->view.m, view, sizeof view);
+    memcpy(frame->view_inverse.m, inverse, sizeof inverse);
+    memcpy(frame->eye.v, inverse[3], 3 * sizeof(float));
+    memcpy(frame->sight.v, slope, sizeof slope);
 }
 
 static bool fill_sun(const scene_sun *sun, const field_context *context, struct frame_block *out) {

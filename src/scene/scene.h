@@ -16,6 +16,7 @@ typedef struct scene_camera {
     const field *near, *far; // metres
     const field
         *orthographic; // metres from the lower edge of the picture to the upper; 0: perspective
+    const field *aperture, *focus; // diameter of the lens, depth that is sharp (0: the target's); m
 } scene_camera;
 
 typedef struct scene_sun {
@@ -123,6 +124,12 @@ void scene_init(scene *s, arena *memory);
 // when a Lua function failed.
 bool scene_fill_frame(const scene *s, const field_context *context, float aspect,
                       struct frame_block *out);
+
+// Moves the camera of a picture within what a lens sees: its lines of sight by a part of the
+// picture (1: its width, its height; to the right, down), its eye within the lens (-1 to 1 of its
+// radius; to the right, up), while what is in focus stays where it is. `last` stays. Shaders need
+// not know.
+void scene_move_sight(struct frame_block *frame, const float picture[2], const float lens[2]);
 
 // Evaluates sun and lights; the sun is the first, whatever its strength.
 bool scene_fill_lights(const scene *s, const field_context *context, struct light_block *out);

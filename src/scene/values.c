@@ -29,6 +29,9 @@ const scene_value scene_camera_values[] = {
     {VALUE(scene_camera, far, "m", "nothing solid farther away is seen"), NUMBER(1000, 0.001f, INFINITY)},
     {VALUE(scene_camera, orthographic, "m", "height of what is seen by lines of sight that are parallel, whatever `fov` says; 0: perspective"),
         NUMBER(0, 0, 1e6f)},
+    {VALUE(scene_camera, aperture, "m", "diameter of the lens, by which is blurred what is not in focus, where a picture is averaged (`roil render --samples`) or traced (`reference`); 0, or with `orthographic`: all is sharp"),
+        NUMBER(0, 0, 1e3f)},
+    {VALUE(scene_camera, focus, "m", "how deep in the picture all is sharp; 0: as deep as the target is far"), NUMBER(0, 0, INFINITY)},
     END,
 };
 

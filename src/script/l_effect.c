@@ -1,5 +1,6 @@
 // effect { name = "explosion", fps = 24, frames = 100 } gives the effect's object. Assigned to it:
-// output, linear, depth (images), camera, sun, sky, lights, update, a function(t, dt), and events.
+// output, linear, depth (images), antialias, camera, sun, sky, lights, update, a function(t, dt),
+// and events.
 #include "base/memory.h"
 #include "script/binding.h"
 #include <string.h>
@@ -80,6 +81,12 @@ static void set_lights(lua_State *L) {
     s->light_count = value_lights(L, 3, who, &s->lights);
 }
 
+static void set_antialias(lua_State *L) {
+    if (lua_type(L, 3) != LUA_TBOOLEAN)
+        vm_error(L, "effect: 'antialias' takes true or false; got %s", object_kind(L, 3));
+    if (!effect_set_antialias(script_of(L)->effect, lua_toboolean(L, 3))) script_raise(L);
+}
+
 static void set_update(lua_State *L) {
     script *s = script_of(L);
     if (lua_type(L, 3) != LUA_TFUNCTION)
@@ -113,6 +120,8 @@ static int l_newindex(lua_State *L) {
         set_scene(L, key);
     else if (strcmp(key, "lights") == 0)
         set_lights(L);
+    else if (strcmp(key, "antialias") == 0)
+        set_antialias(L);
     else if (strcmp(key, "update") == 0)
         set_update(L);
     else if (strcmp(key, "events") == 0)

@@ -87,6 +87,8 @@ static const script_object reference_words[] = {
         KEY("output", "image", "the picture for a display; required"),
         KEY("linear", "image", "the picture for EXR: scene-linear"),
         KEY("depth", "image", "distance along the view axis (m), for EXR"),
+        KEY("antialias", "false", "edges are smooth: what is seen is gathered over frames, by a pass "
+            "`accumulate` before the last `final`, while the camera moves within a pixel"),
         KEY("camera", "orbit { } or camera { }", "see there"),
         KEY("sun", "sun { }", "see there"),
         KEY("sky", "sky { }", "see there"),

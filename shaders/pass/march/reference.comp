@@ -268,14 +268,18 @@ path_state begin(ivec2 pixel, ivec2 size, int number) {
     uint seed = random_hash(frame.size.z + random_hash(frame.size.w));
     path_state s;
     s.random = path_random(uvec3(pixel, uint(number) ^ seed), 0u);
-    vec2 at = vec2(pixel) + 0.5 + path_sample_pixel(filter_, path_next(s.random).xy);
+    vec4 r = path_next(s.random);
+    vec2 at = vec2(pixel) + 0.5 + path_sample_pixel(filter_, r.xy);
     s.weight = vec3(1.0);
     s.light = vec3(0.0);
     s.alpha = 1.0;
     s.bounce = s.turn = 0;
     s.first = 0.0;
-    s.from = frame.eye.xyz;
-    s.way = normalize(frame_ray(at / vec2(size)));
+    // What is in focus is seen at the same place from all over the lens.
+    vec2 across = frame.sight.z * sqrt(r.z) * vec2(cos(2.0 * PATH_PI * r.w), sin(2.0 * PATH_PI * r.w));
+    vec3 beside = (frame.view_inverse * vec4(across, 0.0, 0.0)).xyz;
+    s.from = frame.eye.xyz + beside;
+    s.way = normalize(frame_ray(at / vec2(size)) - beside / frame.sight.w);
     s.begins = true;
     s.done = false;
     return s;

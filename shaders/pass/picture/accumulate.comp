@@ -13,6 +13,7 @@
 uniform sampler2D source;          //= input : premultiplied radiance and opacity, or the lit scene
 uniform sampler2D reach;           //= input optional : how far along its ray lies what each pixel shows (m; 0: nothing); else that is the scene
 uniform sampler2D depth;           //= input optional : depth of the scene (m)
+uniform sampler2D volume;          //= input optional : premultiplied light and opacity of the volume in a picture of both, where what is more to be seen is followed; without: the source is of what `reach` says
 uniform sampler2D before;          //= input history color : what was gathered up to the last frame
 uniform sampler2D known;           //= input history state : `state` of the last frame
 uniform float frames;              //= 8 [1, 64] : how many frames are averaged, in effect; 1: none
@@ -56,7 +57,7 @@ surroundings look_around(ivec2 pixel, ivec2 size) {
         squares += c * c;
         blurred += c * float((2 - abs(i % 3 - 1)) * (2 - abs(i / 3 - 1))) / 16.0;
 #if HAS_REACH
-        float far = texelFetch(reach, texel, 0).r;
+        float far = texelFetch(reach, texel * textureSize(reach, 0) / size, 0).r;
         if (far > 0.0) nearest = min(nearest, far);
 #endif
     }
@@ -113,21 +114,49 @@ float agreement(vec2 uv, float volume, float scene) {
     return 1.0 - smoothstep(depth_tolerance, 2.0 * depth_tolerance, max(apart_volume, apart_scene));
 }
 
+// How much of what is seen near the pixel is of the volume.
+float cover_of(vec2 uv) {
+#if HAS_REACH && HAS_VOLUME
+    return clamp(textureLod(volume, uv, 0.0).a, 0.0, 1.0);
+#else
+    return float(HAS_REACH);
+#endif
+}
+
+// Depth of the scene at a pixel, and the least of 3 x 3: an edge moves as what is before it.
+vec2 scene_at(vec2 uv) {
+#if HAS_DEPTH
+    ivec2 size = textureSize(depth, 0), centre = ivec2(uv * vec2(size));
+    float here = min(texelFetch(depth, centre, 0).r, FAR), nearest = here;
+#if HAS_VOLUME || !HAS_REACH
+    for (int i = 0; i < 9; i++)
+        nearest = min(nearest, texelFetch(depth, clamp(centre + ivec2(i % 3, i / 3) - 1, ivec2(0), size - 1), 0).r);
+#endif
+    return vec2(here, nearest);
+#else
+    return vec2(0.0);
+#endif
+}
+
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy), size = imageSize(color);
     if (any(greaterThanEqual(pixel, size))) return;
     vec2 uv = (vec2(pixel) + 0.5) / vec2(size);
-    vec3 along = frame_ray(uv);
+    // Of a camera that is moved within a pixel the history is that of one that is not.
+    vec3 along = frame_ray_still(uv);
     vec4 now = look(pixel);
+    if (frame.time.w > 0.0) { // all of these are averaged
+        imageStore(color, pixel, now);
+        imageStore(state, pixel, vec4(0.0));
+        return;
+    }
     surroundings here = look_around(pixel, size);
-    float volume = here.nearest / length(along), scene = 0.0, scene_then = 0.0;
-#if HAS_DEPTH
-    scene = min(texelFetch(depth, ivec2(uv * vec2(textureSize(depth, 0))), 0).r, FAR);
-    scene_then = look_back(frame.eye.xyz + scene * along).z;
-#endif
-    vec3 point = frame.eye.xyz + (volume > 0.0 ? volume : scene > 0.0 ? scene : FAR) * along;
+    float cover = cover_of(uv), volume_deep = cover > 0.5 || HAS_DEPTH == 0 ? here.nearest / length(along) : 0.0;
+    vec2 scenes = scene_at(uv);
+    float scene = scenes.x, scene_then = scene > 0.0 ? look_back(frame.eye.xyz + scene * along).z : 0.0;
+    vec3 point = frame.eye.xyz + (volume_deep > 0.0 ? volume_deep : scenes.y > 0.0 ? scenes.y : FAR) * along;
 #if HAS_VELOCITY
-    if (volume > 0.0) point -= frame.time.y * field_velocity(point);
+    if (volume_deep > 0.0) point -= frame.time.y * field_velocity(point);
 #endif
     vec3 then = look_back(point);
 
@@ -135,12 +164,14 @@ void main() {
     vec4 result = now;
     if (all(greaterThanEqual(then.xy, vec2(0.0))) && all(lessThan(then.xy, vec2(1.0)))) {
         age = texelFetch(known, ivec2(then.xy * vec2(size)), 0).b;
-        age *= agreement(then.xy, volume > 0.0 ? then.z : 0.0, scene_then);
+        age *= agreement(then.xy, volume_deep > 0.0 ? then.z : 0.0, scene_then);
         // The mean of an exponential average over `frames`; before, that of what there is.
         float part = max(2.0 / (frames + 1.0), 1.0 / (age + 1.0));
         vec4 turned = here.blurred - encode(fetch_blurred(then.xy));
         vec4 away = encode(fetch_smooth(then.xy)) - here.mean;
-        if (response > part) away += (response - part) / (1.0 - part) * turned;
+        // Of a surface the blurred picture changes by where in the pixel it was looked at.
+        float prompt = HAS_VOLUME == 0 ? response : response * cover;
+        if (prompt > part) away += (prompt - part) / (1.0 - part) * turned;
         // Rounding, which must not count, is a thousandth of what the numbers come from.
         vec4 beyond = abs(away) / (spread * here.deviation + vec4(vec3(1e-3 * here.mean.x), 1e-3) + 1e-6);
         away /= max(1.0, max(max(beyond.x, beyond.y), max(beyond.z, beyond.w)));
@@ -148,5 +179,5 @@ void main() {
     }
     if (any(isnan(result))) result = vec4(0.0); // it would stay for ever
     imageStore(color, pixel, result);
-    imageStore(state, pixel, vec4(volume, scene, min(age + 1.0, 64.0), 0.0));
+    imageStore(state, pixel, vec4(volume_deep, scene, min(age + 1.0, 64.0), 0.0));
 }

@@ -71,11 +71,11 @@ static hash128 hash_inputs(const pass *p, const kernel *k) {
     const field_context *c = p->host->context;
     const struct {
         shared_mat4 view;
-        shared_vec4 eye, lens, shift, sun, sun_radiance, zenith, horizon, night[2];
+        shared_vec4 eye, lens, shift, sight, sun, sun_radiance, zenith, horizon, night[2];
         shared_uvec4 size;
         double time;
     } camera = {f->view,       f->eye,           f->lens,
-                f->shift,      f->sun_direction, f->sun_radiance,
+                f->shift,      f->sight, f->sun_direction, f->sun_radiance,
                 f->sky_zenith, f->sky_horizon,   {f->night_zenith, f->night_horizon},
                 f->size,       c->time};
     hash128 all = hash_bytes(&camera, sizeof camera);

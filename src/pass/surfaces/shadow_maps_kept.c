@@ -26,7 +26,9 @@ static bool add_meshes(const pass *p, hash128 *sum) {
 // The choice of lights, and of how far meshes are simplified, depends on where the camera is.
 static void add_camera(const pass *p, hash128 *sum) {
     const struct frame_block *frame = p->host->frame;
-    add(sum, &frame->view, sizeof frame->view);
+    add(sum, &frame->eye, sizeof frame->eye);
+    // The way it looks, which is the same wherever in a pixel its lines of sight go.
+    for (int i = 0; i < 4; i++) add(sum, &frame->view.m[4 * i + 2], sizeof(float));
     add(sum, &frame->lens, sizeof frame->lens);
     add(sum, &frame->shift, 2 * sizeof *frame->shift.v);
     add(sum, p->host->lights, sizeof *p->host->lights);
