@@ -25,7 +25,23 @@ fx.linear = shown.linear
 return fx
 """
 QUAD = "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nf 1 2 3 4\n"
-SHARP = ("--samples", "1", "--shutter", "0")
+
+# A ball of fire that rises through itself, before cards on the ground; `turns` is of the camera.
+FIRE = """
+local fx = effect { name = "fire", fps = 24, frames = 48 }
+local turns = param { "turns", 0, min = -90, max = 90 }
+fx.camera = orbit { target = {0, 0, 2}, distance = 12, pitch = 8, fov = 32, yaw = turns * time }
+local scene = geometry { mesh { "ground.obj" }, mesh { "card.obj", position = {-3, 0, 1}, rotation = {0, 20, 0} },
+                         mesh { "card.obj", position = {3, 0, 1}, rotation = {0, 20, 30} } }
+local ball = sphere { position = {0, 0, 2.6}, radius = 2.4, falloff = 2.4 }
+local lumps = perlin { frequency = 0.8, octaves = 2, drift = {0, 0, 0.5} }
+local smoke = ball * smoothstep(0, 0.15, ball - 0.3 + lumps)
+local volume = march { density = smoke * 12, emission = vec(1, 0.3, 0.05) * smoke * 40, from = scene, steps = 24,
+                       shadow_steps = 2, resolution = 0.5 }
+fx.output = final { over { volume, shade { from = scene }, from = {volume, scene} } }.color
+fx.antialias = true
+return fx
+"""
 
 
 def difference(a, b):
@@ -115,7 +131,7 @@ return fx
     def test_a_reference_has_the_same_lens(self):
         traced = CARD.replace("shade { from = scene, sky_alpha = 0 }",
                               "reference { density = 0 * sphere { radius = 1 }, samples = 64, bounces = 1, sky_alpha = 0 }")
-        args = ("--set", "turn=0", "--set", "aperture=1", "--set", "focus=5")
+        args = ("--set", "turn=0", "--set", "aperture=2", "--set", "focus=20")
         want = self.row(*args, "--samples", "128", "--shutter", "0")
         got = self.row(*args, effect=traced % "")
         self.assertLess(difference(want, got), 0.06)
@@ -176,6 +192,15 @@ class Antialias(Case):
         self.assertLess(difference(gathered, truth), 0.5 * difference(first, truth))
         off = self.alpha(smooth, "--frames", "10", "--warmup", "9", "--set", "effect.antialias=false")
         self.assertEqual(off, first)
+
+    def test_fire_comes_nearer_to_what_is_seen_and_may_move(self):
+        for turns, part in (("0", 0.6), ("12", 1.25)):
+            def shown(*args, frame=("--frames", "14", "--set", f"turns={turns}")):
+                self.render(FIRE, *frame, *args)
+                return Png(self.read("out.png")).channel(0)
+            truth = shown("--samples", "32", "--shutter", "0")
+            rough = shown("--set", "effect.antialias=false")
+            self.assertLess(difference(shown("--warmup", "12"), truth), part * difference(rough, truth))
 
     def test_what_moves_leaves_no_trail(self):
         moving = CARD % "fx.antialias = true"

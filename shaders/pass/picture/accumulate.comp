@@ -21,7 +21,7 @@ uniform float response;            //= 1 [0, 1] : how much of a change of the bl
 uniform float spread;              //= 1 [0, 10] : standard deviations by which the history may differ from what is around the pixel
 uniform float depth_tolerance;     //= 0.1 [0.001, 1] : relative difference in depth that counts as something else
 writeonly uniform image2D color;   //= output rgba16f : premultiplied radiance and opacity. The `transmittance` of a march, which counts where the extinction has a colour, can take an `accumulate` of its own
-writeonly uniform image2D state;   //= output rgba16f : depth of the volume and of the scene (m; 0: none), frames gathered
+writeonly uniform image2D state;   //= output rgba16f : depth of the volume and of the scene (m; 0: none), frames gathered, how much was of the volume
 
 const float MOST = 6e4; // what a half-float holds
 const float FAR = MOST; // metres
@@ -84,12 +84,19 @@ vec4 fetch_smooth(vec2 uv) {
 }
 
 // The same weights as in look_around.
-vec4 fetch_blurred(vec2 uv) {
-    vec2 half_texel = 0.5 / vec2(textureSize(before, 0));
+vec4 fetch_blurred(sampler2D from, vec2 uv) {
+    vec2 half_texel = 0.5 / vec2(textureSize(from, 0));
     vec4 sum = vec4(0.0);
     for (int i = 0; i < 4; i++)
-        sum += textureLod(before, uv + half_texel * (2.0 * vec2(i & 1, i >> 1) - 1.0), 0.0);
+        sum += textureLod(from, uv + half_texel * (2.0 * vec2(i & 1, i >> 1) - 1.0), 0.0);
     return 0.25 * sum;
+}
+
+// The blurred picture of now at a pixel as a camera sees it that is not moved within one.
+vec4 blurred_now(vec2 uv, vec4 moved) {
+    if (frame.sight.xy == vec2(0.0)) return moved;
+    vec4 c = fetch_blurred(source, uv - vec2(0.5, -0.5) * frame.sight.xy / frame.lens.xy);
+    return encode(mix(vec4(0.0), min(c, MOST), greaterThan(c, vec4(0.0))));
 }
 
 // Where a point was in the frame before: xy in the picture, z: metres deep.
@@ -114,10 +121,11 @@ float agreement(vec2 uv, float volume, float scene) {
     return 1.0 - smoothstep(depth_tolerance, 2.0 * depth_tolerance, max(apart_volume, apart_scene));
 }
 
-// How much of what is seen near the pixel is of the volume.
-float cover_of(vec2 uv) {
+// How much of what is seen near the pixel is of the volume: what it hides, or of the light.
+float cover_of(vec2 uv, vec4 seen) {
 #if HAS_REACH && HAS_VOLUME
-    return clamp(textureLod(volume, uv, 0.0).a, 0.0, 1.0);
+    vec4 c = textureLod(volume, uv, 0.0);
+    return clamp(max(c.a, 2.0 * encode(c).x / max(encode(seen).x, 1e-6) - 0.1), 0.0, 1.0);
 #else
     return float(HAS_REACH);
 #endif
@@ -151,7 +159,7 @@ void main() {
         return;
     }
     surroundings here = look_around(pixel, size);
-    float cover = cover_of(uv), volume_deep = cover > 0.5 || HAS_DEPTH == 0 ? here.nearest / length(along) : 0.0;
+    float cover = cover_of(uv, now), volume_deep = cover > 0.5 || HAS_DEPTH == 0 ? here.nearest / length(along) : 0.0;
     vec2 scenes = scene_at(uv);
     float scene = scenes.x, scene_then = scene > 0.0 ? look_back(frame.eye.xyz + scene * along).z : 0.0;
     vec3 point = frame.eye.xyz + (volume_deep > 0.0 ? volume_deep : scenes.y > 0.0 ? scenes.y : FAR) * along;
@@ -163,14 +171,15 @@ void main() {
     float age = 0.0;
     vec4 result = now;
     if (all(greaterThanEqual(then.xy, vec2(0.0))) && all(lessThan(then.xy, vec2(1.0)))) {
-        age = texelFetch(known, ivec2(then.xy * vec2(size)), 0).b;
+        vec2 last = texelFetch(known, ivec2(then.xy * vec2(size)), 0).ba;
+        age = last.x;
         age *= agreement(then.xy, volume_deep > 0.0 ? then.z : 0.0, scene_then);
         // The mean of an exponential average over `frames`; before, that of what there is.
         float part = max(2.0 / (frames + 1.0), 1.0 / (age + 1.0));
-        vec4 turned = here.blurred - encode(fetch_blurred(then.xy));
+        vec4 turned = blurred_now(uv, here.blurred) - encode(fetch_blurred(before, then.xy));
         vec4 away = encode(fetch_smooth(then.xy)) - here.mean;
         // Of a surface the blurred picture changes by where in the pixel it was looked at.
-        float prompt = HAS_VOLUME == 0 ? response : response * cover;
+        float prompt = HAS_VOLUME == 0 ? response : response * max(cover, last.y);
         if (prompt > part) away += (prompt - part) / (1.0 - part) * turned;
         // Rounding, which must not count, is a thousandth of what the numbers come from.
         vec4 beyond = abs(away) / (spread * here.deviation + vec4(vec3(1e-3 * here.mean.x), 1e-3) + 1e-6);
@@ -179,5 +188,5 @@ void main() {
     }
     if (any(isnan(result))) result = vec4(0.0); // it would stay for ever
     imageStore(color, pixel, result);
-    imageStore(state, pixel, vec4(volume_deep, scene, min(age + 1.0, 64.0), 0.0));
+    imageStore(state, pixel, vec4(volume_deep, scene, min(age + 1.0, 64.0), cover));
 }
