@@ -89,7 +89,9 @@ local shards = particles {
 }
 local ground = mesh { "data/ground.obj", color = {0.6, 0.6, 0.65}, material = material { specular = 0.09, roughness = 0.42 } } -- damp
 local scene = geometry { ground, mesh { "data/yard.obj" }, barrels }
-local drawn = pieces { shards, mesh { "data/shard.obj" }, from = scene, size = 0.35 + 0.75 * particle_random, angle = 1300 * (particle_random - 0.5) * over_age { {0, 0}, {0.35, 1}, {1, 1.1} } }
+-- Few are large, and most are black with soot, so that paint is seen on some only.
+local paint = (0.5 + 0.5 * sin(97 * particle_random)) ^ 3
+local drawn = pieces { shards, mesh { "data/shard.obj" }, from = scene, size = 0.22 + 0.6 * particle_random ^ 4, color = vec(0.3, 0.45, 0.5) + paint * vec(0.7, 0.45, 0.4), angle = 1300 * (particle_random - 0.5) * over_age { {0, 0}, {0.35, 1}, {1, 1.1} } }
 local solid = shade { from = {drawn, scene, lamps}, point_light_shadows = "rays", haze = 0.004 }
 
 -- ---- the bursts -------------------------------------------------------------------------------------
