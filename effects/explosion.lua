@@ -49,7 +49,9 @@ local eaten = detail * fade
 local cover = clamp(smoke * 2.2, 0, 1)
 local crust = smoothstep(0, 0.15, cover - eaten * (1 - lumps) * (1 - 0.6 * cover))
 
--- A black body's light grows with the fourth power of its temperature.
+-- A black body's light grows with the fourth power of its temperature. The first fire is so hot that all
+-- of it would be white on a display; less of it keeps its colour and its folds.
+local young = curve { {0, 0.5}, {0.35, 0.45}, {0.8, 0.85}, {1.1, 1}, shape = "ease_in_out" }
 local fire = palette { blackbody = {500, 4500}, physical = true, reference = 1500 }
 
 fx.camera = camera { eye = {4, -12, 3.36}, target = {4, 4, 3.36}, fov = 31.89, near = 0.1, far = 500 }
@@ -60,7 +62,7 @@ fx.sky    = sky { zenith = {0.10, 0.24, 0.58}, horizon = {0.50, 0.60, 0.72}, str
 -- smoke around it, and all that is scattered on the way.
 local lit = lighting {
   density    = cover * crust * (smoke + 0.15) * density,
-  emission   = fire(heat * (0.15 + 1.35 * lumps) * kelvin) * flame * brightness,
+  emission   = fire(heat * (0.15 + 1.35 * lumps) * kelvin) * flame * brightness * young,
   albedo     = {0.45, 0.43, 0.41},
   anisotropy = 0.2,
   sampling   = "linear",
