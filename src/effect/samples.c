@@ -64,6 +64,7 @@ void effect_move_sight(effect *e, double frame) {
     const bool gathered =
         e->antialiased && e->has_last && !graph_feeds_simulation(e->graph, e->antialias_depth);
     if (e->host.ahead || (!e->samples && !gathered)) return;
+    if (e->given.has_view) return; // whose jitter is in its projection
     const uint32_t turn = e->samples ? e->moment + 1 : e->in_a_row % ANTIALIAS_PLACES + 1;
     float picture[2], lens[2] = {0};
     for (int i = 0; i < 2; i++)
