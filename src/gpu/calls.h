@@ -64,6 +64,7 @@
     X(CreateComputePipelines)                                                                      \
     X(CreateDescriptorPool)                                                                        \
     X(CreateDescriptorSetLayout)                                                                   \
+    X(CreateDescriptorUpdateTemplate)                                                              \
     X(CreateEvent)                                                                                 \
     X(CreateGraphicsPipelines)                                                                     \
     X(CreateImage)                                                                                 \
@@ -78,6 +79,7 @@
     X(DestroyCommandPool)                                                                          \
     X(DestroyDescriptorPool)                                                                       \
     X(DestroyDescriptorSetLayout)                                                                  \
+    X(DestroyDescriptorUpdateTemplate)                                                             \
     X(DestroyDevice)                                                                               \
     X(DestroyEvent)                                                                                \
     X(DestroyImage)                                                                                \
@@ -104,7 +106,7 @@
     X(ResetCommandPool)                                                                            \
     X(ResetDescriptorPool)                                                                         \
     X(ResetEvent)                                                                                  \
-    X(UpdateDescriptorSets)                                                                        \
+    X(UpdateDescriptorSetWithTemplate)                                                             \
     X(WaitSemaphores)
 
 // Of extensions: NULL where these are not enabled.

@@ -76,8 +76,8 @@ static void load_limits(gpu *g) {
 static void load_calls(gpu *g, bool pushes) {
     VkDevice d = g->device;
     if (pushes)
-        g->push_descriptors =
-            (PFN_vkCmdPushDescriptorSetKHR)g->vk.GetDeviceProcAddr(d, "vkCmdPushDescriptorSetKHR");
+        g->push_descriptors = (PFN_vkCmdPushDescriptorSetWithTemplateKHR)g->vk.GetDeviceProcAddr(
+            d, "vkCmdPushDescriptorSetWithTemplateKHR");
     if (!g->instance.labels) return;
     g->begin_label = (PFN_vkCmdBeginDebugUtilsLabelEXT)g->vk.GetDeviceProcAddr(
         d, "vkCmdBeginDebugUtilsLabelEXT");

@@ -36,7 +36,8 @@ static bool create_layout(gpu *g, const gpu_pipeline *pipeline, VkShaderStageFla
                                        .setLayoutCount = 1,
                                        .pSetLayouts = &out->set_layout};
     return vk_check(g, g->vk.CreatePipelineLayout(g->device, &info, NULL, &out->layout),
-                    "creating the layout of pipeline '%s'", pipeline->label);
+                    "creating the layout of pipeline '%s'", pipeline->label) &&
+           vk_create_template(g, pipeline, out);
 }
 
 static bool check_count(const char *label, const char *limit, const char *what, uint32_t wanted,

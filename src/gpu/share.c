@@ -13,6 +13,7 @@
 void vk_built_free(gpu *g, void *object) {
     vk_built *built = object;
     g->vk.DestroyPipeline(g->device, built->handle, NULL);
+    g->vk.DestroyDescriptorUpdateTemplate(g->device, built->descriptors, NULL);
     g->vk.DestroyPipelineLayout(g->device, built->layout, NULL);
     g->vk.DestroyDescriptorSetLayout(g->device, built->set_layout, NULL);
     mem_free(built);

@@ -164,8 +164,9 @@ typedef struct vk_built {
     VkPipeline handle;
     VkPipelineLayout layout;
     VkDescriptorSetLayout set_layout;
-    bool sliced; // may go in several dispatches (dispatch.c)
-    hash128 key; // of the description, without its label
+    VkDescriptorUpdateTemplate descriptors; // of all slots, in their order; none: there are none
+    bool sliced;                            // may go in several dispatches (dispatch.c)
+    hash128 key;                            // of the description, without its label
     uint32_t references;
     struct vk_built *next; // in its row of the table
 } vk_built;
@@ -287,6 +288,7 @@ bool vk_bindings_check(gpu *g, const gpu_pipeline *pipeline, const gpu_binding *
 bool vk_bindings_use(gpu *g, const gpu_pipeline *pipeline, const gpu_binding *list, size_t count);
 bool vk_bindings_bind(gpu *g, VkCommandBuffer commands, const gpu_pipeline *pipeline,
                       const gpu_binding *list, size_t count);
+bool vk_create_template(gpu *g, const gpu_pipeline *pipeline, vk_built *out); // by its layout
 
 typedef struct vk_ring { // staging: positions only grow, the offset is the position modulo size
     gpu_buffer *buffer;
@@ -429,8 +431,8 @@ struct gpu {
     VkPhysicalDeviceMemoryProperties heaps;
     VkFormatFeatureFlags format_features[GPU_FORMAT_COUNT];
     gpu_profile profile;
-    bool draws_many;                                // commands in buffers, at once
-    PFN_vkCmdPushDescriptorSetKHR push_descriptors; // NULL: sets of the batch are bound
+    bool draws_many;                                            // commands in buffers, at once
+    PFN_vkCmdPushDescriptorSetWithTemplateKHR push_descriptors; // NULL: sets of the batch are bound
     PFN_vkCmdBeginDebugUtilsLabelEXT begin_label;
     PFN_vkCmdEndDebugUtilsLabelEXT end_label;
     PFN_vkSetDebugUtilsObjectNameEXT set_name;
