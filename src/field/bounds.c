@@ -24,18 +24,21 @@ static bool is_zero(const float value[4], int components) {
 
 // A kind that computes point by point and makes zero of zeros is zero outside of the boxes of its
 // arguments; arguments that do not vary in space keep their values in this test.
-static box3 bounds_by_zeros(const field *node, const field_context *context, const box3 *args) {
-    if (node->kind->spatial || !node->kind->eval) return box3_infinite();
+static bool bounds_by_zeros(const field *node, const field_context *context, const box3 *args,
+                            box3 *box) {
+    *box = box3_infinite();
+    if (node->kind->spatial || !node->kind->eval) return true;
     float values[FIELD_MAX_ARGS][4] = {{0}}, out[4] = {0};
     box3 all = box3_empty();
-    for (size_t i = 0; i < kind_arg_count(node); i++) {
+    for (size_t i = 0; i < FIELD_MAX_ARGS && node->args[i]; i++) {
         if (!node->args[i]->uniform)
             all = box3_union(all, args[i]);
         else if (!kind_uniform_arg(node, i, context, values[i]))
-            return box3_infinite();
+            return false;
     }
     node->kind->eval(node, context, (float3){0, 0, 0}, (const float(*)[4])values, out);
-    return is_zero(out, node->components) ? all : box3_infinite();
+    if (is_zero(out, node->components)) *box = all;
+    return true;
 }
 
 static box3 bounds_grid(const field *node, bool whole) {
@@ -44,27 +47,36 @@ static box3 bounds_grid(const field *node, bool whole) {
     return whole ? grid->box : box3_intersect(grid->box, grid->state.active);
 }
 
+static bool find(boxes *b, const field *node, box3 *out);
+
+// Of arguments that do not vary in space only factors and the like have a box that counts.
+static bool find_args(boxes *b, const field *node, box3 *out) {
+    const bool all = node->kind->bounds && !node->kind->spatial;
+    for (size_t i = 0; i < FIELD_MAX_ARGS && node->args[i]; i++)
+        if ((all || !node->args[i]->uniform) && !find(b, node->args[i], &out[i])) return false;
+    return true;
+}
+
 static bool find(boxes *b, const field *node, box3 *out) {
+    if (node->uniform) {
+        float value[4];
+        if (!field_eval(node, b->context, (float3){0, 0, 0}, value)) return false;
+        *out = is_zero(value, node->components) ? box3_empty() : box3_infinite();
+        return true;
+    }
     const uint32_t *place = map_find(&b->places, node, 0);
     if (place) {
         *out = b->values[*place];
         return true;
     }
-    if (node->uniform) {
-        float value[4];
-        if (!field_eval(node, b->context, (float3){0, 0, 0}, value)) return false;
-        *out = is_zero(value, node->components) ? box3_empty() : box3_infinite();
-    } else {
-        box3 args[FIELD_MAX_ARGS];
-        for (size_t i = 0; i < kind_arg_count(node); i++)
-            if (!find(b, node->args[i], &args[i])) return false;
-        if (kind_of(node) == KIND_GRID)
-            *out = bounds_grid(node, b->whole);
-        else if (node->kind->bounds)
-            *out = node->kind->bounds(node, b->context, args);
-        else
-            *out = bounds_by_zeros(node, b->context, args);
-    }
+    box3 args[FIELD_MAX_ARGS];
+    if (!find_args(b, node, args)) return false;
+    if (kind_of(node) == KIND_GRID)
+        *out = bounds_grid(node, b->whole);
+    else if (node->kind->bounds)
+        *out = node->kind->bounds(node, b->context, args);
+    else if (!bounds_by_zeros(node, b->context, args, out))
+        return false;
     MEM_RESERVE(b->values, b->count + 1, b->capacity);
     b->values[b->count] = *out;
     map_set(&b->places, node, 0, (uint32_t)b->count++);

@@ -6,21 +6,33 @@
 #include "base/memory.h"
 #include "field/field.h"
 #include "field/kinds.h"
+#include "shared.h"
 #include <math.h>
 #include <string.h>
 
 enum { REMEMBER_FROM = 64 }; // nodes as a tree
+enum { TOGETHER = 256 };     // instances
+
+// Where a field is evaluated. What does not vary in space is evaluated NOWHERE, once for all.
+typedef struct points {
+    const float3 *at;
+    const struct instance_entry *instances; // one for each point; NULL: that of the context
+    size_t count;
+    uint32_t set; // tells these points from others of the evaluation
+} points;
+
+enum { NOWHERE, FIRST_SET };
 
 typedef struct evaluation {
     const field_context *context;
     bool remembers;
-    map places; // (node, point) -> index of the value
+    map places; // (node, set of points) -> index of the first value
     float (*values)[4];
     size_t count, capacity;
-    uint32_t points; // handed out so far
+    uint32_t sets; // handed out so far
 } evaluation;
 
-static bool eval(evaluation *e, const field *node, float3 p, uint32_t point, float out[4]);
+static bool eval(evaluation *e, const field *node, const points *p, float (*out)[4]);
 
 size_t kind_arg_count(const field *node) {
     size_t count = 0;
@@ -40,12 +52,13 @@ int kind_arg_width(const field *node, size_t arg) {
     return width;
 }
 
-static bool eval_args(evaluation *e, const field *node, float3 p, uint32_t point, size_t first,
-                      float out[][4]) {
-    for (size_t i = first; i < FIELD_MAX_ARGS && node->args[i]; i++) {
-        if (!eval(e, node->args[i], p, point, out[i])) return false;
-        for (int c = 1; node->args[i]->components == 1 && c < 4; c++) out[i][c] = out[i][0];
-    }
+// Widened to four components.
+static bool eval_arg(evaluation *e, const field *arg, const points *p, float (*out)[4]) {
+    const points nowhere = {.at = p->at, .count = 1, .set = NOWHERE};
+    const points *at = arg->uniform ? &nowhere : p;
+    if (!eval(e, arg, at, out)) return false;
+    for (size_t i = 0; i < at->count && arg->components == 1; i++)
+        out[i][1] = out[i][2] = out[i][3] = out[i][0];
     return true;
 }
 
@@ -66,81 +79,146 @@ static bool eval_call(const field *node, const field_context *context, float out
     return true;
 }
 
-static bool eval_grid(const field *node, float3 p, float out[4]) {
+static bool eval_grid(const field *node, const points *p, float (*out)[4]) {
     const field_grid *grid = node->object;
     if (!grid->sample)
         return err_set("grid '%s' keeps no values on the host", grid->name ? grid->name : "?");
-    for (int c = 0; c < node->components; c++)
-        if (!grid->sample(grid, p, node->index + c, &out[c])) return false;
+    for (size_t i = 0; i < p->count; i++)
+        for (int c = 0; c < node->components; c++)
+            if (!grid->sample(grid, p->at[i], node->index + c, &out[i][c])) return false;
     return true;
 }
 
-static bool eval_moved(evaluation *e, const field *node, float3 p, uint32_t point, float out[4]) {
-    float args[FIELD_MAX_ARGS][4];
-    if (!eval_args(e, node, p, point, 1, args)) return false;
-    float3 at;
-    if (kind_of(node) == KIND_WARP) {
-        at = (float3){p.x + args[2][0] * args[1][0], p.y + args[2][0] * args[1][1],
-                      p.z + args[2][0] * args[1][2]};
-    } else {
-        float m[3][4], back[3][4];
-        kind_transform_matrix(args[1], args[2], args[3], m, back);
-        at.x = m[0][0] * p.x + m[0][1] * p.y + m[0][2] * p.z + m[0][3];
-        at.y = m[1][0] * p.x + m[1][1] * p.y + m[1][2] * p.z + m[1][3];
-        at.z = m[2][0] * p.x + m[2][1] * p.y + m[2][2] * p.z + m[2][3];
-    }
-    return eval(e, node->args[0], at, ++e->points, out);
+// Where a node that moves space samples its first argument; `args` are of one point.
+static float3 moved(const field *node, float3 p, const float (*args)[4]) {
+    if (kind_of(node) == KIND_WARP)
+        return (float3){p.x + args[2][0] * args[1][0], p.y + args[2][0] * args[1][1],
+                        p.z + args[2][0] * args[1][2]};
+    float m[3][4], back[3][4];
+    kind_transform_matrix(args[1], args[2], args[3], m, back);
+    return (float3){m[0][0] * p.x + m[0][1] * p.y + m[0][2] * p.z + m[0][3],
+                    m[1][0] * p.x + m[1][1] * p.y + m[1][2] * p.z + m[1][3],
+                    m[2][0] * p.x + m[2][1] * p.y + m[2][2] * p.z + m[2][3]};
 }
 
-static bool eval_now(evaluation *e, const field *node, float3 p, uint32_t point, float out[4]) {
-    float args[FIELD_MAX_ARGS][4];
+// The values of a node's arguments at a point, out of columns with one row for each point.
+static void gather(const field *node, const points *p, size_t first, size_t i, float (*columns)[4],
+                   float (*row)[4]) {
+    for (size_t a = first; a < FIELD_MAX_ARGS && node->args[a]; a++)
+        if (i == 0 || !node->args[a]->uniform)
+            memcpy(row[a], columns[a * p->count + i], sizeof row[a]);
+}
+
+static void compute(const evaluation *e, const field *node, const points *p, size_t first,
+                    float (*columns)[4], float3 *to, float (*out)[4]) {
+    float row[FIELD_MAX_ARGS][4];
+    const float(*args)[4] = (const float(*)[4])(p->count == 1 ? columns : row);
+    field_context here;
+    if (p->instances) here = *e->context;
+    for (size_t i = 0; i < p->count; i++) {
+        if (p->count > 1) gather(node, p, first, i, columns, row);
+        if (p->instances) here.instance = &p->instances[i];
+        if (to)
+            to[i] = moved(node, p->at[i], args);
+        else
+            node->kind->eval(node, p->instances ? &here : e->context, p->at[i], args, out[i]);
+    }
+}
+
+static bool eval_by_args(evaluation *e, const field *node, const points *p, float (*columns)[4],
+                         float3 *to, float (*out)[4]) {
+    const size_t first = to ? 1 : 0;
+    for (size_t a = first; a < FIELD_MAX_ARGS && node->args[a]; a++)
+        if (!eval_arg(e, node->args[a], p, &columns[a * p->count])) return false;
+    compute(e, node, p, first, columns, to, out);
+    if (!to) return true;
+    const points there = {to, p->instances, p->count, ++e->sets};
+    return eval(e, node->args[0], &there, out);
+}
+
+static bool eval_node(evaluation *e, const field *node, const points *p, float (*out)[4]) {
+    const bool moves = kind_of(node) == KIND_WARP || kind_of(node) == KIND_TRANSFORM;
+    float columns[FIELD_MAX_ARGS][4];
+    float3 to;
+    if (p->count == 1) return eval_by_args(e, node, p, columns, moves ? &to : NULL, out);
+    float(*all)[4] = mem_alloc(kind_arg_count(node) * p->count * sizeof *all);
+    float3 *all_to = moves ? mem_alloc(p->count * sizeof *all_to) : NULL;
+    const bool done = eval_by_args(e, node, p, all, all_to, out);
+    mem_free(all_to);
+    mem_free(all);
+    return done;
+}
+
+static bool eval_now(evaluation *e, const field *node, const points *p, float (*out)[4]) {
     switch (kind_of(node)) {
+    case KIND_CONSTANT:
+        memcpy(out[0], node->value, sizeof node->value);
+        return true;
     case KIND_PARAM:
-        return eval_param(node, e->context, out);
+        return eval_param(node, e->context, out[0]);
     case KIND_CURVE:
-        curve_eval(node->object, e->context->time, out);
+        curve_eval(node->object, e->context->time, out[0]);
         return true;
     case KIND_CALL:
-        return eval_call(node, e->context, out);
+        return eval_call(node, e->context, out[0]);
     case KIND_TIME:
-        out[0] = (float)e->context->time;
+        out[0][0] = (float)e->context->time;
         return true;
     case KIND_GRID:
         return eval_grid(node, p, out);
-    case KIND_WARP:
-    case KIND_TRANSFORM:
-        return eval_moved(e, node, p, point, out);
     case KIND_GLSL:
         return err_set("the GLSL function '%s' cannot be evaluated on the host",
                        ((const field_glsl *)node->object)->function);
     default:
-        if (!eval_args(e, node, p, point, 0, args)) return false;
-        node->kind->eval(node, e->context, p, (const float(*)[4])args, out);
-        return true;
+        return eval_node(e, node, p, out);
     }
 }
 
-static bool eval(evaluation *e, const field *node, float3 p, uint32_t point, float out[4]) {
-    memset(out, 0, 4 * sizeof *out);
-    if (!e->remembers || !node->args[0]) return eval_now(e, node, p, point, out);
-    const uint32_t *place = map_find(&e->places, node, point);
+static bool eval(evaluation *e, const field *node, const points *p, float (*out)[4]) {
+    memset(out, 0, p->count * sizeof *out);
+    if (!e->remembers || !node->args[0]) return eval_now(e, node, p, out);
+    const uint32_t *place = map_find(&e->places, node, p->set);
     if (place) {
-        memcpy(out, e->values[*place], 4 * sizeof *out);
+        memcpy(out, e->values[*place], p->count * sizeof *out);
         return true;
     }
-    if (!eval_now(e, node, p, point, out)) return false;
-    MEM_RESERVE(e->values, e->count + 1, e->capacity);
-    memcpy(e->values[e->count], out, 4 * sizeof *out);
-    map_set(&e->places, node, point, (uint32_t)e->count++);
+    if (!eval_now(e, node, p, out)) return false;
+    MEM_RESERVE(e->values, e->count + p->count, e->capacity);
+    memcpy(e->values[e->count], out, p->count * sizeof *out);
+    map_set(&e->places, node, p->set, (uint32_t)e->count);
+    e->count += p->count;
     return true;
 }
 
-bool field_eval(const field *node, const field_context *context, float3 p, float out[4]) {
-    evaluation e = {.context = context, .remembers = node->size > REMEMBER_FROM};
-    bool ok = eval(&e, node, p, 0, out);
+static bool field_eval_points(const field *node, const field_context *context, const points *p,
+                              float (*out)[4]) {
+    evaluation e = {.context = context, .remembers = node->size > REMEMBER_FROM, .sets = FIRST_SET};
+    const bool done = eval(&e, node, p, out);
     map_free(&e.places);
     mem_free(e.values);
-    return ok;
+    return done;
+}
+
+bool field_eval(const field *node, const field_context *context, float3 p, float out[4]) {
+    const points at = {.at = &p, .count = 1, .set = node->uniform ? NOWHERE : FIRST_SET};
+    return field_eval_points(node, context, &at, (float(*)[4])out);
+}
+
+bool field_eval_instances(const field *node, const field_context *context,
+                          const struct instance_entry *entries, size_t count, float (*out)[4]) {
+    float3 at[TOGETHER];
+    for (size_t first = 0; first < count; first += TOGETHER) {
+        const size_t here = count - first < TOGETHER ? count - first : TOGETHER;
+        const points p = {at, entries + first, here, FIRST_SET};
+        for (size_t i = 0; i < here; i++) memcpy(&at[i], p.instances[i].place.v, sizeof at[i]);
+        if (node->uniform) {
+            if (first == 0 && !field_eval(node, context, at[0], out[0])) return false;
+            for (size_t i = 0; i < here; i++) memcpy(out[first + i], out[0], sizeof *out);
+        } else if (!field_eval_points(node, context, &p, out + first)) {
+            return false;
+        }
+    }
+    return true;
 }
 
 bool kind_uniform_arg(const field *node, size_t arg, const field_context *context, float out[4]) {

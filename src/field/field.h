@@ -143,6 +143,9 @@ enum { FIELD_ADVECT_COST = 3 * (FIELD_MAX_ADVECTED + 32) * sizeof(field) };
 // Value at a point, by the kinds' C twins. Grids are sampled trilinearly on the host where they
 // keep host data, else this fails. False when a Lua function failed.
 bool field_eval(const field *node, const field_context *context, float3 p, float out[4]);
+// The same for each of `count` instances, at its place; what does not vary is evaluated once.
+bool field_eval_instances(const field *node, const field_context *context,
+                          const struct instance_entry *entries, size_t count, float (*out)[4]);
 // Box outside of which the field is zero; infinite when unknown.
 bool field_bounds(const field *node, const field_context *context, box3 *out);
 // Of a tree without bounds, the node to blame: one that is not zero although one of its arguments

@@ -1,5 +1,5 @@
 // Operators: the twin of shaders/lib/operator.glsl and of GLSL's own functions. Arguments come
-// widened to four components, so that every component can be computed alike.
+// widened to four components, so that those of the result can be computed alike.
 #include "field/kinds.h"
 #include "shared.h"
 #include <math.h>
@@ -10,8 +10,8 @@ static const double degree = 3.14159265358979323846 / 180;
 #define EACH(NAME, EXPRESSION)                                                                     \
     void eval_##NAME(const field *node, const field_context *context, float3 p,                    \
                      const float(*args)[4], float out[4]) {                                        \
-        (void)node, (void)context, (void)p;                                                        \
-        for (int i = 0; i < 4; i++) out[i] = EXPRESSION;                                           \
+        (void)context, (void)p;                                                                    \
+        for (int i = 0; i < node->components; i++) out[i] = EXPRESSION;                            \
     }
 #define A args[0][i]
 #define B args[1][i]

@@ -2,6 +2,7 @@
 #include "field_build.h"
 
 #include "field/kinds.h"
+#include "shared.h"
 
 static const field_context still = {0};
 
@@ -246,6 +247,58 @@ static void large_graphs_are_evaluated_once(void **state) {
     strbuf_free(&text);
 }
 
+enum { MANY = 600 }; // more than are evaluated together
+
+static bool count_call(void *user, int function, double time, float out[4]) {
+    (void)function;
+    *out = (float)(2 * time);
+    ++*(int *)user;
+    return true;
+}
+
+static void make_instances(struct instance_entry *out) {
+    for (uint32_t i = 0; i < MANY; i++)
+        out[i] = (struct instance_entry){.place = {{0.1f * (float)i, (float)(i % 7), 1, 1}},
+                                         .state = {{(float)(i % 11), 0.5f, 0, 0}},
+                                         .kind = {{0, i, 0, 0}}};
+}
+
+static void instances_have_the_values_of_their_places_and_states(void **state) {
+    (void)state;
+    static struct instance_entry entries[MANY];
+    static float values[MANY][4];
+    int calls = 0;
+    field_context context = {.time = 3, .call = count_call, .user = &calls};
+    make_instances(entries);
+    field *age = make("sub", field_call(build_memory(), 1, 0),
+                      need_field(field_swizzle(build_memory(), make("instance_state", NULL), "x")));
+    field *moving = make("warp", make("perlin", NULL), make("vec", age, age, age), number(0.3f));
+    field *small = make("mix", make("smoothstep", age, number(-1), number(4)),
+                        make("transform", moving, vector(1, 2, 3), vector(0, 0, 90)),
+                        make("instance_index", NULL));
+    field *large = small;
+    for (int i = 0; i < 12; i++) large = make("mul", make("add", large, large), number(0.5f));
+    const field *fields[] = {small, large,
+                             make("mul", field_call(build_memory(), 1, 0), number(2))};
+    for (size_t k = 0; k < COUNT_OF(fields); k++) {
+        calls = 0;
+        assert_true(field_eval_instances(fields[k], &context, entries, MANY, values));
+        assert_in_range(calls, 1, MANY / 10); // in a few lots, not for each of them
+        for (uint32_t i = 0; i < MANY; i++) {
+            float alone[4];
+            context.instance = &entries[i];
+            const float *at = entries[i].place.v;
+            assert_true(field_eval(fields[k], &context, (float3){at[0], at[1], at[2]}, alone));
+            assert_memory_equal(values[i], alone, sizeof *alone);
+        }
+        context.instance = NULL;
+    }
+    context.call = twice_the_time;
+    assert_false(field_eval_instances(make("mul", age, field_call(build_memory(), 1, 1)), &context,
+                                      entries, MANY, values));
+    assert_error("line 3: oh");
+}
+
 // ---- bounds -----------------------------------------------------------------------------------
 
 static box3 box_of(const field *node) {
@@ -371,6 +424,7 @@ int main(void) {
         cmocka_unit_test(operators_are_defined_for_every_number),
         cmocka_unit_test(warps_and_transforms_move_the_point),
         cmocka_unit_test(large_graphs_are_evaluated_once),
+        cmocka_unit_test(instances_have_the_values_of_their_places_and_states),
         cmocka_unit_test(bounds_of_operators),
         cmocka_unit_test(bounds_of_moved_fields),
         cmocka_unit_test(bounds_of_grids_are_what_is_active),

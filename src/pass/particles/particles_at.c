@@ -2,10 +2,8 @@
 // on the host, where the number of births is known too, and the device looks for a random number in
 // the sums. Who is born where follows from its number and the sums alone.
 #include "base/error.h"
-#include "base/memory.h"
 #include "pass/particles/particles_parts.h"
 #include <math.h>
-#include <string.h>
 
 bool particles_open_at(pass *p, particles_state *s) {
     particles_at *at = &s->at;
@@ -13,6 +11,7 @@ bool particles_open_at(pass *p, particles_state *s) {
     at->count = scene_instances_count(s->desc.at);
     if (!at->count) return err_set("%s: 'at' has no instances", p->label);
     at->sums = arena_alloc(p->host->memory, at->count * sizeof *at->sums);
+    at->shares = arena_alloc(p->host->memory, at->count * sizeof *at->shares);
     return true;
 }
 
@@ -25,37 +24,22 @@ bool particles_make_at(pass *p, particles_state *s) {
     return at->buffer && scene_instances_allocate(s->desc.at, p->host->device);
 }
 
-static bool share_of(const pass *p, const field *share, const struct instance_entry *entry,
-                     double *out) {
-    float value[4] = {1};
-    field_context context = *p->host->context;
-    context.instance = entry;
-    const float *place = entry->place.v;
-    if (share && !field_eval(share, &context, (float3){place[0], place[1], place[2]}, value))
-        return err_prefix("%s: 'share': ", p->label);
-    *out = isfinite(value[0]) && value[0] > 0 ? fmin((double)value[0], 1e9) : 0;
-    return true;
-}
-
 // Those that are not shown, too: what burns may have fallen.
 bool particles_sum_shares(const pass *p) {
     particles_state *s = particles_of(p);
     particles_at *at = &s->at;
     if (!s->desc.at) return true;
-    const struct instance_entry *entries = scene_instances_entries(s->desc.at);
-    float *sums = mem_alloc(at->count * sizeof *sums);
-    double total = 0, share = 0;
+    if (s->desc.share &&
+        !field_eval_instances(s->desc.share, p->host->context, scene_instances_entries(s->desc.at),
+                              at->count, at->shares))
+        return err_prefix("%s: 'share': ", p->label);
+    at->total = 0;
     for (uint32_t i = 0; i < at->count; i++) {
-        if (!share_of(p, s->desc.share, &entries[i], &share)) {
-            mem_free(sums);
-            return false;
-        }
-        sums[i] = (float)(total += share);
+        const float share = s->desc.share ? at->shares[i][0] : 1;
+        at->total += isfinite(share) && share > 0 ? fmin((double)share, 1e9) : 0;
+        if (at->sums[i] != (float)at->total) at->written = false;
+        at->sums[i] = (float)at->total;
     }
-    at->total = total;
-    at->written = at->written && memcmp(at->sums, sums, at->count * sizeof *sums) == 0;
-    memcpy(at->sums, sums, at->count * sizeof *sums);
-    mem_free(sums);
     return true;
 }
 

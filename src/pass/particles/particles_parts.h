@@ -68,6 +68,7 @@ typedef struct particles_lost { // births without a place; zero: there is no sha
 
 typedef struct particles_at { // births at instances; zero: anywhere
     float *sums;              // of the shares up to each
+    float (*shares)[4];       // the last ones, in the first components
     uint32_t count;
     double total;
     bool written; // to the buffer
