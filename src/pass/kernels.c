@@ -31,9 +31,16 @@ static const char *const common_names[COMMON_NAMES] = {"box_min", "box_max"};
 
 enum { MAX_PROVIDERS = 8 };
 
+typedef struct value_copy { // of a uniform of the interface that the kernel has
+    const kernel_place *to;
+    uint16_t uniform;
+    bool whole;
+} value_copy;
+
 typedef struct pass_built {
     kernel base;
-    const kernel_place *uniforms; // of the interface
+    value_copy *copies;
+    size_t copy_count;
     const kernel_place *common, *solver;
     const kernel_place *provided[MAX_PROVIDERS]; // NULL: nothing of that row's is in it
     slot_source sources[GPU_MAX_SLOTS];
@@ -176,12 +183,23 @@ static bool has_any(const kernel_place *places, size_t count) {
     return false;
 }
 
+static void find_copies(pass *p, pass_built *b, const kernel_place *places) {
+    b->copies = arena_alloc(p->host->memory, (p->face->uniform_count + 1) * sizeof *b->copies);
+    for (size_t i = 0; i < p->face->uniform_count; i++) {
+        if (!has_any(&places[i], 1)) continue;
+        const int stage = places[i].member[0] < 0;
+        const shader_member *member = &b->base.binaries[stage].members[places[i].member[stage]];
+        b->copies[b->copy_count++] =
+            (value_copy){&places[i], (uint16_t)i, member->type == SHADER_INT};
+    }
+}
+
 static void find_places(pass *p, pass_built *b) {
     arena *memory = p->host->memory;
     const shader_interface *face = p->face;
     const char **names = mem_alloc((face->uniform_count + 1) * sizeof *names);
     for (size_t i = 0; i < face->uniform_count; i++) names[i] = face->uniforms[i].name;
-    b->uniforms = kernel_find(&b->base, memory, (kernel_names){names, face->uniform_count});
+    find_copies(p, b, kernel_find(&b->base, memory, (kernel_names){names, face->uniform_count}));
     b->common = kernel_find(&b->base, memory, (kernel_names){common_names, COMMON_NAMES});
     b->solver = kernel_find(&b->base, memory, solver_names(p));
     mem_free(names);
@@ -194,8 +212,7 @@ static void find_places(pass *p, pass_built *b) {
 }
 
 static void note_wanted(pass *p, const pass_built *b) {
-    for (size_t i = 0; i < p->face->uniform_count; i++)
-        p->wanted[i] = p->wanted[i] || has_any(&b->uniforms[i], 1);
+    for (size_t i = 0; i < b->copy_count; i++) p->wanted[b->copies[i].uniform] = true;
 }
 
 static bool add_stage(pass *p, kernel_source *source, const char *shader, shader_stage stage,
@@ -267,7 +284,10 @@ static bool build_kernel(pass *p, size_t index, pass_built *b) {
 static void allocate(pass *p) {
     arena *memory = p->host->memory;
     const size_t uniforms = p->face->uniform_count + 1;
-    if (!p->built) p->built = arena_alloc(memory, count_kernels(p) * sizeof *p->built);
+    if (!p->built) {
+        p->built_count = count_kernels(p);
+        p->built = arena_alloc(memory, p->built_count * sizeof *p->built);
+    }
     if (p->values) return;
     p->values = arena_alloc(memory, uniforms * sizeof *p->values);
     p->wanted = arena_alloc(memory, uniforms * sizeof *p->wanted);
@@ -299,8 +319,8 @@ static bool build_one(void *user, size_t index) {
 
 static bool for_each(pass *p, bool (*run)(void *user, size_t index)) {
     allocate(p);
-    if (!worker_each(count_kernels(p), run, p)) return false;
-    for (size_t i = 0; i < count_kernels(p); i++)
+    if (!worker_each(p->built_count, run, p)) return false;
+    for (size_t i = 0; i < p->built_count; i++)
         if (p->built[i].base.stages) note_wanted(p, &p->built[i]);
     return true;
 }
@@ -327,7 +347,7 @@ bool pass_reads_frame(const pass *p, size_t index) {
 }
 
 bool pass_reads_texture(const pass *p, size_t texture) {
-    for (size_t k = 0; p->built && k < count_kernels(p); k++) {
+    for (size_t k = 0; k < p->built_count; k++) {
         const pass_built *b = &p->built[k];
         for (size_t i = 0; i < b->base.slot_count; i++)
             if (b->sources[i].kind == FROM_TEXTURE && b->sources[i].index == (int16_t)texture)
@@ -344,8 +364,7 @@ bool pass_make_kernel(pass *p, size_t index, bool again) {
 }
 
 void pass_destroy_kernels(pass *p) {
-    for (size_t i = 0; p->built && i < count_kernels(p); i++)
-        kernel_destroy(&p->built[i].base, p->host->device);
+    for (size_t i = 0; i < p->built_count; i++) kernel_destroy(&p->built[i].base, p->host->device);
 }
 
 // ---- numbers ----------------------------------------------------------------------------------
@@ -356,20 +375,16 @@ bool pass_evaluate_values(pass *p) {
     return true;
 }
 
-static void copy_value(kernel *k, const kernel_place *place, const float value[4]) {
+static void copy_value(kernel *k, const value_copy *copy, const float value[4]) {
     const int32_t whole = (int32_t)lrintf(value[0]);
-    for (int s = 0; s < k->stages; s++) {
-        if (place->member[s] < 0) continue;
-        const bool is_whole = k->binaries[s].members[place->member[s]].type == SHADER_INT;
-        kernel_set_at(k, place, is_whole ? (const void *)&whole : value,
-                      is_whole ? sizeof whole : 4 * sizeof *value);
-    }
+    kernel_set_at(k, copy->to, copy->whole ? (const void *)&whole : value,
+                  copy->whole ? sizeof whole : 4 * sizeof *value);
 }
 
 static void copy_provided(pass *p, const pass_provider *row, size_t index) {
     uint32_t values[PASS_PROVIDER_VALUES];
     if (!row->values || !row->values(p, values)) return;
-    for (size_t i = 0; i < count_kernels(p); i++) {
+    for (size_t i = 0; i < p->built_count; i++) {
         const kernel_place *places = p->built[i].provided[index];
         for (size_t u = 0; places && u < row->uniforms.count; u++)
             kernel_set_at(&p->built[i].base, &places[u], &values[u], sizeof values[u]);
@@ -379,11 +394,10 @@ static void copy_provided(pass *p, const pass_provider *row, size_t index) {
 void pass_copy_values(pass *p) {
     size_t count;
     const pass_provider *const *rows = pass_providers(&count);
-    for (size_t i = 0; i < count_kernels(p); i++) {
+    for (size_t i = 0; i < p->built_count; i++) {
         pass_built *b = &p->built[i];
-        if (!b->base.stages) continue;
-        for (size_t u = 0; u < p->face->uniform_count; u++)
-            copy_value(&b->base, &b->uniforms[u], p->values[u]);
+        for (size_t c = 0; c < b->copy_count; c++)
+            copy_value(&b->base, &b->copies[c], p->values[b->copies[c].uniform]);
     }
     for (size_t r = 0; r < count; r++) copy_provided(p, rows[r], r);
 }
@@ -402,7 +416,7 @@ void pass_set_int(pass *p, int name, int32_t value) {
 
 void pass_set_box(pass *p, box3 box) {
     if (box3_is_empty(box)) box = (box3){{0, 0, 0}, {0, 0, 0}};
-    for (size_t i = 0; i < count_kernels(p); i++) {
+    for (size_t i = 0; i < p->built_count; i++) {
         pass_built *b = &p->built[i];
         if (!b->base.stages) continue;
         kernel_set_at(&b->base, &b->common[COMMON_BOX_MIN], &box.min, sizeof box.min);

@@ -60,10 +60,11 @@ struct pass {
     const struct pass_name *names; // what the type's names are in `face`
     int density;                   // of that name, in face->fields; -1: none
     pass_parent *parents;          // of uniforms (source.c); NULL: nothing is taken from others
-    struct pass_built *built;      // kernels, as the type lists them
-    float (*values)[4];            // of uniforms, in this frame
-    bool *wanted;                  // of uniforms: a kernel or the type reads it
-    pass *runs_in;                 // the pass that builds and runs this one; NULL: the graph does
+    struct pass_built *built;      // kernels, as the type lists them, then those of providers
+    size_t built_count;
+    float (*values)[4]; // of uniforms, in this frame
+    bool *wanted;       // of uniforms: a kernel or the type reads it
+    pass *runs_in;      // the pass that builds and runs this one; NULL: the graph does
 };
 
 // Puts the line that made it before the message, unless one stands there. Always returns false.
