@@ -154,7 +154,8 @@ struct pass_provider {
     void (*destroy)(pass *p);
 };
 const pass_provider *const *pass_providers(size_t *count);
-extern const pass_provider pass_particles_provider, pass_point_lights_provider;
+extern const pass_provider pass_particles_provider, pass_point_lights_provider,
+    pass_shadow_maps_provider;
 
 // The rest of this part is for the core alone.
 typedef struct pass_name { // what a type's name is in the interface; -1: not that

@@ -83,6 +83,7 @@ static const pass_provider drawn = {.defines = define_drawn};
 const pass_provider *const *pass_providers(size_t *count) {
     static const pass_provider *const rows[] = {&pass_particles_provider,
                                                 &pass_point_lights_provider,
+                                                &pass_shadow_maps_provider,
                                                 &counters,
                                                 &rays,
                                                 &blue_noise,

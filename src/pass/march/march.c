@@ -154,26 +154,13 @@ static bool march_record(pass *p) {
     return record_part(p, inside);
 }
 
-const pass_type march_type = {
-    .name = "march",
-    .shader = "pass/march/march.comp",
-    .kernels = kernels,
-    .kernel_count = MARCH_KERNELS,
-    .names = {names, COUNT_OF(names)},
-    .declare = march_declare,
-    .defines = march_defines,
-    .update = march_update,
-    .record = march_record,
-};
+#define MARCH_TYPE(NAME)                                                                           \
+    {                                                                                              \
+        .name = NAME, .shader = "pass/march/" NAME ".comp", .kernels = kernels,                    \
+        .kernel_count = MARCH_KERNELS, .names = {names, COUNT_OF(names)},                          \
+        .declare = march_declare, .defines = march_defines, .update = march_update,                \
+        .record = march_record,                                                                    \
+    }
 
-const pass_type maps_type = {
-    .name = "maps",
-    .shader = "pass/march/maps.comp",
-    .kernels = kernels,
-    .kernel_count = MARCH_KERNELS,
-    .names = {names, COUNT_OF(names)},
-    .declare = march_declare,
-    .defines = march_defines,
-    .update = march_update,
-    .record = march_record,
-};
+const pass_type march_type = MARCH_TYPE("march");
+const pass_type maps_type = MARCH_TYPE("maps");

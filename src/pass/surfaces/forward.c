@@ -4,7 +4,6 @@
 #include "pass/pass_impl.h"
 #include "pass/surfaces/drawn.h"
 #include "pass/surfaces/rays.h"
-#include "pass/surfaces/shadow_maps.h"
 
 enum {
     FORWARD_SKY = RAYS_VARIANTS,
@@ -33,7 +32,6 @@ typedef struct forward_state {
 
 static bool forward_declare(pass *p) {
     forward_state *s = p->state = arena_alloc(p->host->memory, sizeof *s);
-    if (!pass_choose_shadows(p)) return false;
     s->drawn = drawn_create(p, FORWARD_CHOOSE, false);
     s->z = pass_add_target(p, "z", GPU_D32F);
     return s->z.id && pass_declare_images(p) && pass_add_to_graph_with(p, &s->z, 1);

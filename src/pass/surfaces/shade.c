@@ -3,7 +3,6 @@
 #include "base/memory.h"
 #include "pass/pass_impl.h"
 #include "pass/surfaces/rays.h"
-#include "pass/surfaces/shadow_maps.h"
 
 enum {
     TILE = 16, // as in shade/shafts.glsl
@@ -29,7 +28,7 @@ typedef struct shade_state {
 static bool shade_declare(pass *p) {
     p->state = arena_alloc(p->host->memory, sizeof(shade_state));
     pass_drop_matte(p, "surface", "emission");
-    return pass_choose_shadows(p) && pass_declare_images(p) && pass_add_to_graph(p);
+    return pass_declare_images(p) && pass_add_to_graph(p);
 }
 
 static bool shade_defines(pass *p, size_t index, pass_defines *out) {

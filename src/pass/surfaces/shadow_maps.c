@@ -1,7 +1,6 @@
 // Maps of what stands before the lights: views are placed (those of sun and spots on the host,
 // those of the point lights that matter most on the device, where point lights move), then meshes
 // and instances are drawn in each, into one atlas.
-#include "pass/surfaces/shadow_maps.h"
 #include "base/error.h"
 #include "base/memory.h"
 #include "pass/pass_impl.h"
@@ -379,8 +378,10 @@ static const char *choose_way(const pass *p, const pass *maps) {
     return leaves_lights_out(maps) ? "both" : "maps";
 }
 
-bool pass_choose_shadows(pass *p) {
+// Settles `auto`. Maps that nothing is looked up in are let go, so that they are not drawn.
+static bool find_shadow_maps(pass *p) {
     static const char *const looked_at[] = {"shadow_atlas", "shadow_views"};
+    if (pass_find_image(p, looked_at[0]) < 0 || !*pass_word(p, "shadows_by")) return true;
     const pass *maps = maps_of(p);
     bool asks = pass_has_word(p, "shadows_by", "maps") || pass_has_word(p, "shadows_by", "both");
     if (asks && !p->images[pass_image_index(p, looked_at[0])].id)
@@ -394,3 +395,5 @@ bool pass_choose_shadows(pass *p) {
         p->images[pass_image_index(p, looked_at[i])] = (graph_image){0};
     return true;
 }
+
+const pass_provider pass_shadow_maps_provider = {.find = find_shadow_maps};
