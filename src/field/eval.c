@@ -11,7 +11,7 @@
 #include <string.h>
 
 enum { REMEMBER_FROM = 64 }; // nodes as a tree
-enum { TOGETHER = 256 };     // instances
+enum { TOGETHER = 16 };      // instances: their values are on the stack
 
 // Where a field is evaluated. What does not vary in space is evaluated NOWHERE, once for all.
 typedef struct points {
@@ -101,22 +101,21 @@ static float3 moved(const field *node, float3 p, const float (*args)[4]) {
                     m[2][0] * p.x + m[2][1] * p.y + m[2][2] * p.z + m[2][3]};
 }
 
-// The values of a node's arguments at a point, out of columns with one row for each point.
-static void gather(const field *node, const points *p, size_t first, size_t i, float (*columns)[4],
-                   float (*row)[4]) {
-    for (size_t a = first; a < FIELD_MAX_ARGS && node->args[a]; a++)
-        if (i == 0 || !node->args[a]->uniform)
-            memcpy(row[a], columns[a * p->count + i], sizeof row[a]);
-}
-
+// By the values of its arguments, in columns of one row for each point.
 static void compute(const evaluation *e, const field *node, const points *p, size_t first,
                     float (*columns)[4], float3 *to, float (*out)[4]) {
     float row[FIELD_MAX_ARGS][4];
+    size_t varying[FIELD_MAX_ARGS], count = 0;
     const float(*args)[4] = (const float(*)[4])(p->count == 1 ? columns : row);
     field_context here;
     if (p->instances) here = *e->context;
+    for (size_t a = first; a < FIELD_MAX_ARGS && node->args[a] && p->count > 1; a++) {
+        memcpy(row[a], columns[a * p->count], sizeof row[a]);
+        if (!node->args[a]->uniform) varying[count++] = a;
+    }
     for (size_t i = 0; i < p->count; i++) {
-        if (p->count > 1) gather(node, p, first, i, columns, row);
+        for (size_t k = 0; k < count; k++)
+            memcpy(row[varying[k]], columns[varying[k] * p->count + i], sizeof *row);
         if (p->instances) here.instance = &p->instances[i];
         if (to)
             to[i] = moved(node, p->at[i], args);
@@ -127,26 +126,26 @@ static void compute(const evaluation *e, const field *node, const points *p, siz
 
 static bool eval_by_args(evaluation *e, const field *node, const points *p, float (*columns)[4],
                          float3 *to, float (*out)[4]) {
-    const size_t first = to ? 1 : 0;
+    const bool moves = kind_of(node) == KIND_WARP || kind_of(node) == KIND_TRANSFORM;
+    const size_t first = moves ? 1 : 0;
     for (size_t a = first; a < FIELD_MAX_ARGS && node->args[a]; a++)
         if (!eval_arg(e, node->args[a], p, &columns[a * p->count])) return false;
-    compute(e, node, p, first, columns, to, out);
-    if (!to) return true;
+    compute(e, node, p, first, columns, moves ? to : NULL, out);
+    if (!moves) return true;
     const points there = {to, p->instances, p->count, ++e->sets};
     return eval(e, node->args[0], &there, out);
 }
 
-static bool eval_node(evaluation *e, const field *node, const points *p, float (*out)[4]) {
-    const bool moves = kind_of(node) == KIND_WARP || kind_of(node) == KIND_TRANSFORM;
+static bool eval_alone(evaluation *e, const field *node, const points *p, float (*out)[4]) {
     float columns[FIELD_MAX_ARGS][4];
     float3 to;
-    if (p->count == 1) return eval_by_args(e, node, p, columns, moves ? &to : NULL, out);
-    float(*all)[4] = mem_alloc(kind_arg_count(node) * p->count * sizeof *all);
-    float3 *all_to = moves ? mem_alloc(p->count * sizeof *all_to) : NULL;
-    const bool done = eval_by_args(e, node, p, all, all_to, out);
-    mem_free(all_to);
-    mem_free(all);
-    return done;
+    return eval_by_args(e, node, p, columns, &to, out);
+}
+
+static bool eval_together(evaluation *e, const field *node, const points *p, float (*out)[4]) {
+    float columns[FIELD_MAX_ARGS * TOGETHER][4];
+    float3 to[TOGETHER];
+    return eval_by_args(e, node, p, columns, to, out);
 }
 
 static bool eval_now(evaluation *e, const field *node, const points *p, float (*out)[4]) {
@@ -170,7 +169,7 @@ static bool eval_now(evaluation *e, const field *node, const points *p, float (*
         return err_set("the GLSL function '%s' cannot be evaluated on the host",
                        ((const field_glsl *)node->object)->function);
     default:
-        return eval_node(e, node, p, out);
+        return p->count == 1 ? eval_alone(e, node, p, out) : eval_together(e, node, p, out);
     }
 }
 
