@@ -149,17 +149,11 @@ static bool flow_compile_kernels(flow *f, const gpu_profile *device, shader_libr
         if (!is_used(&f->desc, (flow_kernel)i)) continue;
         if (define_of((flow_kernel)i))
             defines[count++] = (shader_define){define_of((flow_kernel)i), ""};
-        const kernel_source source = {
-            .label = shaders[i],
-            .stages = {{.name = shaders[i],
-                        .stage = SHADER_COMPUTE,
-                        .defines = defines,
-                        .define_count = count,
-                        .reader = reader}},
-            .stage_count = 1,
-            .names = flow_kernel_table.names,
-        };
-        if (!kernel_compile(&f->kernels[i], library, f->memory, &source)) return false;
+        const shader_compile_desc shader = {
+            .name = shaders[i], .defines = defines, .define_count = count, .reader = reader};
+        if (!kernel_compile_compute(&f->kernels[i], library, f->memory, &shader,
+                                    flow_kernel_table.names))
+            return false;
     }
     return true;
 }
@@ -219,7 +213,8 @@ bool flow_allocate(flow *f, gpu *g) {
         f->buffers[i] = gpu_buffer_create(g, &(gpu_buffer_desc){.label = "flow", .size = sizes[i]});
         if (!f->buffers[i]) return false;
     }
-    return flow_transform_allocate(f, g) && flow_report_allocate(f, g);
+    return flow_transform_allocate(f, g) &&
+           kernel_readback_make(&f->report, g, "flow's report", FLOW_REPORT_WORDS);
 }
 
 void flow_list_memory(const flow *f, budget_list *out) {
@@ -241,7 +236,7 @@ void flow_destroy(flow *f, gpu *g) {
     for (int i = 0; i < FLOW_MEM_COUNT; i++) gpu_buffer_destroy(g, f->buffers[i]);
     for (int i = 0; i < 2 * FLOW_LOOKS; i++)
         gpu_image_destroy(g, f->looks[i / FLOW_LOOKS][i % FLOW_LOOKS]);
-    flow_report_destroy(f, g);
+    kernel_readback_destroy(&f->report, g);
     gpu_buffer_destroy(g, f->modes);
     f->modes = NULL;
     memset(f->buffers, 0, sizeof f->buffers);

@@ -2,6 +2,7 @@
 #pragma once
 #include "gpu/profile.h"
 #include "kernel/kernel.h"
+#include "kernel/readback.h"
 #include "sim/flow.h"
 
 // ---- to be measured on a device ---------------------------------------------------------------
@@ -66,25 +67,9 @@ typedef struct flow_level {
     uint32_t coefficients_at, r_at, z_at; // where those of the first slice begin
 } flow_level;
 
-// ---- reports: flow_report.c -------------------------------------------------------------------
-
-enum { FLOW_REPORT_PLACES = GPU_FRAMES_IN_FLIGHT + 1 };
-
-typedef struct flow_place {
-    uint64_t frame, step; // frame 0: nothing was recorded
-} flow_place;
-
-typedef struct flow_reporter {
-    gpu_buffer *found;
-    gpu_image *result;
-    flow_place places[FLOW_REPORT_PLACES];
-    uint32_t next;
-} flow_reporter;
-
-bool flow_report_allocate(flow *f, gpu *g);
-void flow_report_destroy(flow *f, gpu *g);
-
 // ---- the solver -------------------------------------------------------------------------------
+
+enum { FLOW_REPORT_WORDS = 9 };
 
 typedef enum flow_kernel {
     FLOW_DIFFUSE, // flow_step.c
@@ -144,7 +129,7 @@ struct flow {
     uint32_t current;                // of pairs that are the state's
     bool built;                      // coefficients are there
     uint64_t kept, steps;
-    flow_reporter reporter;
+    kernel_readback report;
 };
 
 uint64_t flow_cells(const flow *f); // of all slices

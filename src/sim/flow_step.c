@@ -130,7 +130,7 @@ bool flow_reset(flow *f, gpu *g) {
     f->kept = f->steps = 0;
     f->current = 0;
     f->built = false;
-    memset(f->reporter.places, 0, sizeof f->reporter.places);
+    kernel_readback_forget(&f->report);
     for (int i = 0; i < FLOW_MEM_COUNT; i++)
         if (f->buffers[i]) gpu_buffer_fill(g, f->buffers[i], 0);
     return true;

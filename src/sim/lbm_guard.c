@@ -1,10 +1,10 @@
 // A thread checks every stride-th cell, its group adds up the results of its threads, and one more
 // group those of the groups: two dispatches that read each moment once, 16 bytes per cell. The
-// order is fixed, and therefore the sums are. The record is copied as an image, a row of words, to
-// one of as many places as frames can be in flight.
+// order is fixed, and therefore the sums are.
 #include "sim/lbm_guard.h"
 #include "base/memory.h"
 #include "kernel/kernel.h"
+#include "kernel/readback.h"
 #include <string.h>
 
 #define NAMES(NAME)                                                                                \
@@ -22,21 +22,14 @@ enum {
     RECORD = 80,        // bytes of one, as the shader lays it out
     NOTES = 17,         // words of the one that is read, before the notes
     WORDS = NOTES + LBM_NOTES,
-    PLACES = GPU_FRAMES_IN_FLIGHT + 1,
 };
-
-typedef struct guard_place {
-    uint64_t frame, step; // frame 0: nothing was recorded
-} guard_place;
 
 struct lbm_guard {
     uint32_t size[3], groups;
     arena *memory;
     kernel kernels[2]; // moments, records
-    gpu_buffer *parts, *found, *notes;
-    gpu_image *result;
-    guard_place places[PLACES];
-    uint32_t next;
+    gpu_buffer *parts, *notes;
+    kernel_readback report;
 };
 
 static uint32_t count_cells(const lbm_guard *guard) {
@@ -55,51 +48,35 @@ lbm_guard *lbm_guard_create(arena *memory, const uint32_t size[3]) {
 bool lbm_guard_compile(lbm_guard *guard, shader_library *library, const shader_reader *reader) {
     static const shader_define last = {"LAST", ""};
     for (size_t i = 0; i < 2; i++) {
-        const kernel_source source = {
-            .label = shader[0],
-            .stages = {{.name = shader[0],
-                        .stage = SHADER_COMPUTE,
-                        .defines = &last,
-                        .define_count = i,
-                        .reader = reader}},
-            .stage_count = 1,
-            .names = lbm_guard_kernel_table.names,
-        };
-        if (!kernel_compile(&guard->kernels[i], library, guard->memory, &source)) return false;
+        const shader_compile_desc desc = {
+            .name = shader[0], .defines = &last, .define_count = i, .reader = reader};
+        if (!kernel_compile_compute(&guard->kernels[i], library, guard->memory, &desc,
+                                    lbm_guard_kernel_table.names))
+            return false;
     }
     return true;
 }
 
 bool lbm_guard_allocate(lbm_guard *guard, gpu *g) {
-    if (guard->result) return true;
+    if (guard->report.image) return true;
     for (int i = 0; i < 2; i++)
         if (!kernel_build(&guard->kernels[i], g)) return false;
     guard->parts = gpu_buffer_create(
         g, &(gpu_buffer_desc){.label = "guard", .size = (uint64_t)guard->groups * RECORD});
-    guard->found = gpu_buffer_create(g, &(gpu_buffer_desc){.label = "guard's report",
-                                                           .size = PLACES * WORDS * 4,
-                                                           .kind = GPU_BUFFER_READBACK});
-    guard->result = gpu_image_create(g, &(gpu_image_desc){.label = "guard",
-                                                          .format = GPU_R32U,
-                                                          .width = WORDS,
-                                                          .height = 1,
-                                                          .use = GPU_USE_STORAGE});
     const uint32_t none[LBM_NOTES] = {0};
     guard->notes =
         gpu_buffer_create(g, &(gpu_buffer_desc){.label = "guard's notes", .size = sizeof none});
-    return guard->parts && guard->found && guard->result && guard->notes &&
+    return guard->parts && guard->notes &&
+           kernel_readback_make(&guard->report, g, "guard's report", WORDS) &&
            gpu_buffer_write(g, guard->notes, 0, none, sizeof none);
 }
 
 void lbm_guard_destroy(lbm_guard *guard, gpu *g) {
     for (int i = 0; i < 2; i++) kernel_destroy(&guard->kernels[i], g);
     gpu_buffer_destroy(g, guard->parts);
-    gpu_buffer_destroy(g, guard->found);
     gpu_buffer_destroy(g, guard->notes);
-    gpu_image_destroy(g, guard->result);
-    guard->parts = guard->found = guard->notes = NULL;
-    guard->result = NULL;
-    lbm_guard_forget(guard);
+    kernel_readback_destroy(&guard->report, g);
+    guard->parts = guard->notes = NULL;
 }
 
 static bool guard_dispatch(lbm_guard *guard, gpu *g, int which, gpu_buffer *moments) {
@@ -108,7 +85,7 @@ static bool guard_dispatch(lbm_guard *guard, gpu *g, int which, gpu_buffer *mome
     kernel_bind_buffer(k, N_Moments, moments);
     kernel_bind_buffer(k, N_Parts, guard->parts);
     kernel_bind_buffer(k, N_Notes, guard->notes);
-    kernel_bind_image(k, N_result, guard->result);
+    kernel_bind_image(k, N_result, guard->report.image);
     kernel_set_int(k, N_count, (int32_t)(which == 0 ? count_cells(guard) : guard->groups));
     kernel_set_int(k, N_stride, (int32_t)stride);
     return kernel_run(k, g, stride, 1, 1);
@@ -117,15 +94,10 @@ static bool guard_dispatch(lbm_guard *guard, gpu *g, int which, gpu_buffer *mome
 bool lbm_guard_record(lbm_guard *guard, gpu *g, const lbm *l, lbm_guard_limits limits) {
     gpu_buffer *moments = lbm_moments(l, 0);
     if (!moments) return true;
-    uint32_t place = guard->next;
     kernel_set_float(&guard->kernels[1], N_spoilt_speed, limits.speed);
     kernel_set_float(&guard->kernels[1], N_spoilt_drift, limits.drift);
-    if (!guard_dispatch(guard, g, 0, moments) || !guard_dispatch(guard, g, 1, moments) ||
-        !gpu_image_copy_to_buffer(g, guard->result, guard->found, place * WORDS * 4))
-        return false;
-    guard->places[place] = (guard_place){gpu_frame_open(g), lbm_steps(l)};
-    guard->next = (place + 1) % PLACES;
-    return true;
+    return guard_dispatch(guard, g, 0, moments) && guard_dispatch(guard, g, 1, moments) &&
+           kernel_readback_send(&guard->report, g, lbm_steps(l));
 }
 
 static void guard_unpack(const lbm_guard *guard, const uint32_t words[WORDS], lbm_report *out) {
@@ -150,19 +122,16 @@ static void guard_unpack(const lbm_guard *guard, const uint32_t words[WORDS], lb
 }
 
 bool lbm_guard_read(lbm_guard *guard, gpu *g, lbm_report *out) {
-    for (uint32_t age = 1; age <= PLACES; age++) {
-        uint32_t place = (guard->next + PLACES - age) % PLACES;
-        const guard_place *at = &guard->places[place];
-        if (at->frame == 0 || !gpu_frame_done(g, at->frame)) continue;
-        guard_unpack(guard, (const uint32_t *)gpu_buffer_map(guard->found) + place * WORDS, out);
-        out->step = at->step;
-        return true;
-    }
-    return false;
+    uint64_t step;
+    const uint32_t *words = kernel_readback_newest(&guard->report, g, &step);
+    if (!words) return false;
+    guard_unpack(guard, words, out);
+    out->step = step;
+    return true;
 }
 
 gpu_buffer *lbm_guard_newest(const lbm_guard *guard) {
-    return guard->places[(guard->next + PLACES - 1) % PLACES].frame ? guard->parts : NULL;
+    return kernel_readback_sent(&guard->report) ? guard->parts : NULL;
 }
 
 gpu_buffer *lbm_guard_notes(const lbm_guard *guard) {
@@ -170,5 +139,5 @@ gpu_buffer *lbm_guard_notes(const lbm_guard *guard) {
 }
 
 void lbm_guard_forget(lbm_guard *guard) {
-    memset(guard->places, 0, sizeof guard->places);
+    kernel_readback_forget(&guard->report);
 }

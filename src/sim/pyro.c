@@ -210,17 +210,11 @@ static bool pyro_compile_kernels(pyro *p, const gpu_profile *device, shader_libr
         if (!is_used(&p->desc, (pyro_kernel)i)) continue;
         for (int k = 0; k < 2; k++)
             if (more_defines[i][k]) defines[count++] = (shader_define){more_defines[i][k], "1"};
-        const kernel_source source = {
-            .label = shaders[i],
-            .stages = {{.name = shaders[i],
-                        .stage = SHADER_COMPUTE,
-                        .defines = defines,
-                        .define_count = count,
-                        .reader = reader}},
-            .stage_count = 1,
-            .names = pyro_kernel_table.names,
-        };
-        if (!kernel_compile(&p->kernels[i], library, p->memory, &source)) return false;
+        const shader_compile_desc shader = {
+            .name = shaders[i], .defines = defines, .define_count = count, .reader = reader};
+        if (!kernel_compile_compute(&p->kernels[i], library, p->memory, &shader,
+                                    pyro_kernel_table.names))
+            return false;
     }
     return true;
 }
@@ -305,7 +299,8 @@ bool pyro_allocate(pyro *p, gpu *g) {
             gpu_buffer_create(g, &(gpu_buffer_desc){.label = memory_labels[i], .size = sizes[i]});
         if (!p->buffers[i]) return false;
     }
-    return pyro_allocate_guide(p, g) && pyro_report_allocate(p, g);
+    return pyro_allocate_guide(p, g) &&
+           kernel_readback_make(&p->report, g, "report of burning gas", PYRO_REPORT_WORDS);
 }
 
 void pyro_list_memory(const pyro *p, budget_list *out) {
@@ -329,7 +324,7 @@ void pyro_destroy(pyro *p, gpu *g) {
         gpu_image_destroy(g, p->looks[i / PYRO_LOOKS][i % PYRO_LOOKS]);
     gpu_image_destroy(g, p->pull);
     p->pull = NULL;
-    pyro_report_destroy(p, g);
+    kernel_readback_destroy(&p->report, g);
     memset(p->buffers, 0, sizeof p->buffers);
     memset(p->looks, 0, sizeof p->looks);
 }

@@ -2,6 +2,7 @@
 #pragma once
 #include "gpu/profile.h"
 #include "kernel/kernel.h"
+#include "kernel/readback.h"
 #include "sim/pyro.h"
 
 enum {
@@ -50,16 +51,7 @@ typedef struct pyro_level {
 } pyro_level;
 
 enum { PYRO_SUMS = 3 }; // of conjugate gradients
-enum { PYRO_REPORT_PLACES = GPU_FRAMES_IN_FLIGHT + 1, PYRO_REPORT_WORDS = 8 };
-
-typedef struct pyro_reporter {
-    gpu_buffer *found;
-    gpu_image *result;
-    struct {
-        uint64_t frame, step; // frame 0: nothing was recorded
-    } places[PYRO_REPORT_PLACES];
-    uint32_t next;
-} pyro_reporter;
+enum { PYRO_REPORT_WORDS = 8 };
 
 typedef enum pyro_kernel {
     PYRO_K_RESET, // of the gas
@@ -144,7 +136,7 @@ struct pyro {
     gpu_image *looks[2][PYRO_LOOKS]; // [kept % 2] is written next
     uint32_t current;                // of pairs that are the state's
     uint64_t kept, steps;
-    pyro_reporter reporter;
+    kernel_readback report;
     gpu_image *force, *guide;
     gpu_image *pull; // what the guide adds to the velocity
     pyro_solids solids;
@@ -199,7 +191,3 @@ void pyro_set_pull(const pyro *p, kernel *k, const pyro_numbers *numbers); // of
 // Of pressure, from the gas after the step and the solids.
 bool pyro_find_coefficients(pyro *p, gpu *g, const pyro_numbers *numbers);
 bool pyro_obstruct(pyro *p, gpu *g, const pyro_numbers *numbers); // the next state
-
-// pyro_report.c
-bool pyro_report_allocate(pyro *p, gpu *g);
-void pyro_report_destroy(pyro *p, gpu *g);

@@ -244,7 +244,7 @@ bool pyro_reset(pyro *p, gpu *g, const pyro_numbers *n) {
     p->active_known = false;
     p->kept = p->steps = 0;
     p->current = 0;
-    memset(p->reporter.places, 0, sizeof p->reporter.places);
+    kernel_readback_forget(&p->report);
     for (int which = 0; which < 2; which++) {
         kernel *gas = pyro_use(p, PYRO_K_RESET);
         bind_gas(p, gas, N_PyroGasTo, N_PyroSmokeTo, (place)which);

@@ -1,5 +1,6 @@
 // The inside of the pass type `particles`, for its own files only.
 #pragma once
+#include "kernel/readback.h"
 #include "pass/particles/particles.h"
 #include "pass/pass_impl.h"
 
@@ -52,17 +53,8 @@ typedef struct particles_buffers {
     gpu_buffer *positions[PARTICLES_PARTS], *velocities[PARTICLES_PARTS], *quantities;
 } particles_buffers;
 
-typedef struct particles_lost_place { // that a count is copied to
-    uint64_t frame, births;           // frame 0: there is none
-} particles_lost_place;
-
-enum { PARTICLES_PLACES = GPU_FRAMES_IN_FLIGHT + 1 };
-
 typedef struct particles_lost { // births without a place; zero: there is no shape
-    gpu_image *count;
-    gpu_buffer *found;
-    particles_lost_place places[PARTICLES_PLACES];
-    uint32_t next;
+    kernel_readback count;
     uint64_t births; // of the record
 } particles_lost;
 

@@ -85,7 +85,7 @@ static bool give_birth(pass *p, particles_state *s, uint32_t count) {
     kernel *k = pass_use(p, PARTICLES_BIRTH);
     s->lost.births += count;
     if (!k) return false;
-    kernel_bind_image(k, N_lost, s->lost.count);
+    kernel_bind_image(k, N_lost, s->lost.count.image);
     kernel_bind_buffer(k, N_BirthTriangles, s->triangles);
     kernel_bind_buffer(k, N_BirthShares, s->at.buffer);
     if (s->desc.at) kernel_bind_buffer(k, N_Instances, scene_instances_buffer(s->desc.at));
