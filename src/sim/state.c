@@ -39,30 +39,44 @@ static bool list_images(const sim_state *s, gpu *g, const char *label, checkpoin
     return true;
 }
 
-bool sim_state_list(const sim_state *s, gpu *g, const char *label, checkpoint_list *out) {
+static char *describe(const sim_state_kind *kind, const void *solver, const char *more,
+                      arena *memory) {
+    strbuf lines = {0};
+    kind->describe(solver, &lines);
+    strbuf_add(&lines, "%s", more);
+    char *text = arena_string(memory, strbuf_text(&lines));
+    strbuf_free(&lines);
+    return text;
+}
+
+bool sim_state_list(const sim_state_kind *kind, void *solver, gpu *g, const char *label,
+                    const char *more, checkpoint_list *out) {
     arena *memory = &out->memory;
     state_clock *clock = arena_alloc(memory, sizeof *clock);
-    *clock = (state_clock){*s->steps, *s->kept};
-    checkpoint_add(out, &(checkpoint_part){.name = name(memory, label, s->kind),
-                                           .size = strlen(s->lines),
+    char *lines = describe(kind, solver, more, memory);
+    sim_state s = {0};
+    kind->find(solver, &s);
+    *clock = (state_clock){*s.steps, *s.kept};
+    checkpoint_add(out, &(checkpoint_part){.name = name(memory, label, kind->name),
+                                           .size = strlen(lines),
                                            .width = 1,
-                                           .bytes = arena_string(memory, s->lines)});
+                                           .bytes = lines});
     checkpoint_add(out, &(checkpoint_part){.name = name(memory, label, "clock"),
                                            .size = sizeof *clock,
                                            .width = 8,
                                            .bytes = clock});
-    for (size_t i = 0; i < s->buffer_count; i++) {
-        const checkpoint_part part = buffer_part(s, i, memory, label);
+    for (size_t i = 0; i < s.buffer_count; i++) {
+        const checkpoint_part part = buffer_part(&s, i, memory, label);
         checkpoint_add(out, &part);
     }
-    return list_images(s, g, label, out);
+    return list_images(&s, g, label, out);
 }
 
 // ---- loading ----------------------------------------------------------------------------------
 
-static bool state_clear(const sim_state *s, gpu *g) {
+static bool state_clear(const sim_state_kind *kind, void *solver, gpu *g) {
     if (!gpu_frame_begin(g)) return false;
-    bool done = s->reset(s->solver, g);
+    bool done = kind->reset(solver, g);
     return gpu_frame_end(g) && done;
 }
 
@@ -79,31 +93,40 @@ static bool load_image(const sim_state *s, gpu *g, size_t which, size_t i, arena
     return done;
 }
 
-static bool state_load(const sim_state *s, gpu *g, arena *memory, const char *label,
-                       checkpoint *c) {
+static bool load_parts(const sim_state *s, const state_clock *clock, gpu *g, arena *memory,
+                       const char *label, checkpoint *c) {
+    for (size_t i = 0; i < s->buffer_count; i++) {
+        const checkpoint_part part = buffer_part(s, i, memory, label);
+        if (!checkpoint_load(c, g, &part)) return false;
+    }
+    for (size_t which = 0; which < 2 && which < clock->kept; which++)
+        for (size_t i = 0; i < s->image_count; i++)
+            if (!load_image(s, g, which, i, memory, label, c)) return false;
+    *s->steps = clock->steps;
+    *s->kept = clock->kept;
+    return true;
+}
+
+static bool state_load(const sim_state_kind *kind, void *solver, gpu *g, arena *memory,
+                       const char *label, checkpoint *c) {
     state_clock clock;
+    sim_state s = {0};
     const checkpoint_part own = {
         .name = name(memory, label, "clock"), .size = sizeof clock, .bytes = &clock};
     if (!checkpoint_load(c, NULL, &own)) return false;
     if (clock.steps > UINT64_C(1) << 60 || clock.kept > clock.steps + 1)
         return err_set("the checkpoint's clock is damaged");
-    if (!state_clear(s, g)) return false;
-    for (size_t i = 0; i < s->buffer_count; i++) {
-        const checkpoint_part part = buffer_part(s, i, memory, label);
-        if (!checkpoint_load(c, g, &part)) return false;
-    }
-    for (size_t which = 0; which < 2 && which < clock.kept; which++)
-        for (size_t i = 0; i < s->image_count; i++)
-            if (!load_image(s, g, which, i, memory, label, c)) return false;
-    *s->steps = clock.steps;
-    *s->kept = clock.kept;
-    return true;
+    if (!state_clear(kind, solver, g)) return false;
+    kind->find(solver, &s);
+    return load_parts(&s, &clock, g, memory, label, c);
 }
 
-bool sim_state_load(const sim_state *s, gpu *g, const char *label, checkpoint *c) {
+bool sim_state_load(const sim_state_kind *kind, void *solver, gpu *g, const char *label,
+                    const char *more, checkpoint *c) {
     arena memory = {0};
-    bool done = checkpoint_require(c, name(&memory, label, s->kind), s->lines) &&
-                state_load(s, g, &memory, label, c);
+    bool done = checkpoint_require(c, name(&memory, label, kind->name),
+                                   describe(kind, solver, more, &memory)) &&
+                state_load(kind, solver, g, &memory, label, c);
     arena_free(&memory);
     return done;
 }
