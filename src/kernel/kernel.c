@@ -1,6 +1,7 @@
 #include "kernel/kernel.h"
 #include "base/error.h"
 #include "base/memory.h"
+#include <assert.h>
 #include <string.h>
 
 // ---- building ---------------------------------------------------------------------------------
@@ -51,6 +52,14 @@ bool kernel_compile(kernel *k, shader_library *library, arena *memory,
     made.places = kernel_find(&made, memory, source->names);
     *k = made;
     return true;
+}
+
+bool kernel_compile_compute(kernel *k, shader_library *library, arena *memory,
+                            const shader_compile_desc *shader, kernel_names names) {
+    const kernel_source source = {
+        .label = shader->name, .stages = {*shader}, .stage_count = 1, .names = names};
+    assert(shader->stage == SHADER_COMPUTE);
+    return kernel_compile(k, library, memory, &source);
 }
 
 static bool kernel_replace(kernel *k, gpu *g, gpu_pipeline *pipeline) {

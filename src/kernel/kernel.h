@@ -62,6 +62,9 @@ typedef struct kernel_source {
 // Compiles the shaders. Needs no device. The results live in `memory`. A second call replaces them;
 // the pipeline stays until the next kernel_build. False with a message, and nothing has changed.
 bool kernel_compile(kernel *k, shader_library *library, arena *memory, const kernel_source *source);
+// Does the same for a compute shader, by whose name the kernel goes.
+bool kernel_compile_compute(kernel *k, shader_library *library, arena *memory,
+                            const shader_compile_desc *shader, kernel_names names);
 // Builds the pipeline of a compute shader.
 bool kernel_build(kernel *k, gpu *g);
 // Builds the pipeline of a vertex and a fragment shader. The kernel sets the label, the code and

@@ -56,17 +56,14 @@ static bool build_kind(pass *p, gpu_format format, bool sparse) {
                                      {"BRICK", sparse ? "8" : "4"},
                                      {"PACKED", fits ? "0" : "1"},
                                      {"SPARSE", ""}};
-    const kernel_source source = {.label = "ranges",
-                                  .stages = {{.name = shaders[0],
-                                              .stage = SHADER_COMPUTE,
-                                              .defines = defines,
-                                              .define_count = sparse ? 4 : 3,
-                                              .reader = p->host->reader}},
-                                  .stage_count = 1,
-                                  .names = ranges_kernel_table.names};
+    const shader_compile_desc shader = {.name = shaders[0],
+                                        .defines = defines,
+                                        .define_count = sparse ? 4 : 3,
+                                        .reader = p->host->reader};
     ranges_kind *made = &r->kinds[r->kind_count];
     *made = (ranges_kind){.format = format, .sparse = sparse};
-    if (!kernel_compile(&made->kernel, p->host->library, p->host->memory, &source) ||
+    if (!kernel_compile_compute(&made->kernel, p->host->library, p->host->memory, &shader,
+                                ranges_kernel_table.names) ||
         !kernel_build(&made->kernel, p->host->device))
         return false;
     r->kind_count++;

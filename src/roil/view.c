@@ -94,16 +94,10 @@ const kernel_table view_kernel_table = {{names, COUNT_OF(names)}, files, COUNT_O
 
 bool view_make_compute(roil *r, gpu *device, kernel *k, const char *file,
                        const shader_define *defines, size_t define_count) {
-    const kernel_source source = {
-        .label = file,
-        .stages = {{.name = file,
-                    .stage = SHADER_COMPUTE,
-                    .defines = defines,
-                    .define_count = define_count}},
-        .stage_count = 1,
-        .names = view_kernel_table.names,
-    };
-    return k->pipeline || (kernel_compile(k, r->view->library, &r->view->memory, &source) &&
+    const shader_compile_desc shader = {
+        .name = file, .defines = defines, .define_count = define_count};
+    return k->pipeline || (kernel_compile_compute(k, r->view->library, &r->view->memory, &shader,
+                                                  view_kernel_table.names) &&
                            kernel_build(k, device));
 }
 

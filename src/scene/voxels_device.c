@@ -36,13 +36,10 @@ static int stages_of(const voxels *v) {
 
 bool voxels_compile(voxels *v, shader_library *library, const shader_reader *reader) {
     for (int i = 0; i < stages_of(v); i++) {
-        const kernel_source source = {
-            .label = shaders[i],
-            .stages = {{.name = shaders[i], .stage = SHADER_COMPUTE, .reader = reader}},
-            .stage_count = 1,
-            .names = voxels_kernel_table.names,
-        };
-        if (!kernel_compile(&v->kernels[i], library, v->memory, &source)) return false;
+        const shader_compile_desc shader = {.name = shaders[i], .reader = reader};
+        if (!kernel_compile_compute(&v->kernels[i], library, v->memory, &shader,
+                                    voxels_kernel_table.names))
+            return false;
     }
     return true;
 }

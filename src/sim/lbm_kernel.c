@@ -13,17 +13,9 @@ bool lbm_kernel_compile(lbm *l, lbm_kernel *k, const char *shader, shader_librar
     shader_define defines[LBM_MAX_DEFINES + 4];
     size_t count = lbm_defines(l, defines);
     for (size_t i = 0; i < more_count; i++) defines[count++] = more[i];
-    const kernel_source source = {
-        .label = shader,
-        .stages = {{.name = shader,
-                    .stage = SHADER_COMPUTE,
-                    .defines = defines,
-                    .define_count = count,
-                    .reader = reader}},
-        .stage_count = 1,
-        .names = lbm_kernel_table.names,
-    };
-    return kernel_compile(&k->base, library, l->memory, &source);
+    const shader_compile_desc desc = {
+        .name = shader, .defines = defines, .define_count = count, .reader = reader};
+    return kernel_compile_compute(&k->base, library, l->memory, &desc, lbm_kernel_table.names);
 }
 
 bool lbm_kernel_run(const lbm *l, lbm_kernel *k, gpu *g) {
