@@ -188,10 +188,6 @@ void air_destroy_templates(air *a);
 void air_save_templates(const air *a, struct checkpoint_list *out);
 bool air_load_templates(air *a, struct checkpoint *from);
 void air_define_templates(const air *a, pass_defines *out); // of the kernel that draws them
-bool air_templates_defines(pass *p, size_t index, pass_defines *out); // hooks of a group
-bool air_templates_declare(pass *p);
-bool air_templates_update(pass *p);
-extern const pass_kernel air_templates_kernel;
 
 // air_source.c
 typedef struct air_cells { // whole numbers
@@ -219,11 +215,6 @@ enum { AIR_EVALUATE, AIR_GIVE, AIR_MARK, AIR_SOURCE_KERNELS };
 // Whether a field of the pass samples the air, with a message that ends with `instead`: what it
 // holds is known when a step is done, and the pass runs before.
 bool air_is_read_by(const air *a, const pass *p, const char *instead);
-bool air_source_declare(pass *p);
-bool air_source_defines(pass *p, size_t index, pass_defines *out);
-void air_source_list_memory(const pass *p, budget_list *out);
-bool air_source_update(pass *p);
-void air_source_destroy(pass *p);
 bool air_run_source(pass *source);                // before a step
 void air_forget_source(pass *source);             // its values are found anew
 bool air_source_waits(const pass *source);        // its particles have not come to the host's time

@@ -7,9 +7,11 @@
 #include "base/memory.h"
 #include "base/str.h"
 #include "pass/air/air_parts.h"
+#include "sim/lbm.h"
+#include "sim/pyro.h"
 #include <string.h>
 
-bool air_source_declare(pass *p) {
+static bool air_source_declare(pass *p) {
     if (pass_given_field(p, N_radius) && !p->particles)
         return err_set("%s: 'radius' is of particles, and it has none; say whose, as in particles "
                        "= sparks",
@@ -113,7 +115,7 @@ static bool mark(pass *p, const air_source *s) {
 
 // ---- building ---------------------------------------------------------------------------------
 
-bool air_source_defines(pass *p, size_t index, pass_defines *out) {
+static bool air_source_defines(pass *p, size_t index, pass_defines *out) {
     const air_source *s = p->state;
     if (index == AIR_MARK) return p->particles;
     if (index == AIR_EVALUATE) return true;
@@ -122,7 +124,7 @@ bool air_source_defines(pass *p, size_t index, pass_defines *out) {
     return true;
 }
 
-void air_source_destroy(pass *p) {
+static void air_source_destroy(pass *p) {
     air_source *s = p->state;
     if (!s) return;
     gpu_buffer_destroy(p->host->device, s->values);
@@ -141,7 +143,7 @@ bool air_source_is_away(const pass *source) {
 
 // ---- values -----------------------------------------------------------------------------------
 
-bool air_source_update(pass *p) {
+static bool air_source_update(pass *p) {
     const air_source *s = p->state;
     pass_set_box(p, s->air->grid.box);
     pass_set_float(p, N_cell_size, (float)s->air->units.cell);
@@ -208,7 +210,7 @@ static bool find_values(pass *p, air_source *s) {
 }
 
 // What the first turn takes; of a box that cannot be evaluated, which its frame will tell, nothing.
-void air_source_list_memory(const pass *p, budget_list *out) {
+static void air_source_list_memory(const pass *p, budget_list *out) {
     const air_source *s = p->state;
     pass_host *host = p->host;
     const field_context *now = host->context;
@@ -290,3 +292,22 @@ bool air_run_source(pass *p) {
     if (begin_turn(p, s) && (s->cells.count[0] <= 0 || source_give(p, s))) return true;
     return err_prefix("%s: ", p->label);
 }
+
+#define SOURCE_TYPE(KIND)                                                                          \
+    {                                                                                              \
+        .name = #KIND "_source", .constructed = true, .shader = "pass/air/" #KIND "_source.comp",  \
+        .kernels =                                                                                 \
+            (const pass_kernel[AIR_SOURCE_KERNELS]){                                               \
+                [AIR_EVALUATE] = {.define = "STAGE_EVALUATE"},                                     \
+                [AIR_MARK] = {.define = "STAGE_MARK"},                                             \
+                [AIR_GIVE] = {.shader = "pass/air/" #KIND "/give.comp", .without_fields = true},   \
+            },                                                                                     \
+        .kernel_count = AIR_SOURCE_KERNELS, .names = {air_names, AIR_NAME_COUNT},                  \
+        .solver = &KIND##_kernel_table, .unscaled = true, .meshes = PASS_USES_MESHES,              \
+        .declare = air_source_declare, .defines = air_source_defines,                              \
+        .list_memory = air_source_list_memory, .update = air_source_update,                        \
+        .destroy = air_source_destroy,                                                             \
+    }
+
+const pass_type lbm_source_type = SOURCE_TYPE(lbm);
+const pass_type pyro_source_type = SOURCE_TYPE(pyro);

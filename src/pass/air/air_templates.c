@@ -9,12 +9,12 @@
 #include "base/memory.h"
 #include "pass/air/air_parts.h"
 #include "sim/checkpoint.h"
+#include "sim/lbm.h"
+#include "sim/pyro.h"
 #include <string.h>
 
 enum { ROWS = 7, LEAST_SIDE = 4 }; // of a template (templates_state.glsl), and of a tile, texels
 enum { PRESSURE, VELOCITY };       // words of `kind`
-
-const pass_kernel air_templates_kernel = {0};
 
 static air *air_of_group(const pass *p) {
     const template_group *g = p->state;
@@ -58,7 +58,7 @@ bool pass_air_add_templates(pass *p, pass *group, const picture *image, uint32_t
     return template_set_add(&a->templates.set, a, group, image, count, "");
 }
 
-bool air_templates_declare(pass *p) {
+static bool air_templates_declare(pass *p) {
     (void)p;
     return true; // the air runs it
 }
@@ -89,7 +89,7 @@ void air_define_templates(const air *a, pass_defines *out) {
     pass_define_flag(out, "HAS_OWN_FORCE", air_force_varies(a->pass));
 }
 
-bool air_templates_defines(pass *p, size_t index, pass_defines *out) {
+static bool air_templates_defines(pass *p, size_t index, pass_defines *out) {
     const air *a = air_of_group(p);
     (void)index;
     out->count += a->kind->source_defines(a, out->items + out->count);
@@ -139,7 +139,7 @@ static bool region_box(const pass *p, box3 *out) {
     return true;
 }
 
-bool air_templates_update(pass *p) {
+static bool air_templates_update(pass *p) {
     const template_group *g = p->state;
     const air *a = g->owner;
     const uint32_t seeds[2] = {(uint32_t)pass_value(p, N_seed), g->index};
@@ -221,3 +221,14 @@ bool air_load_templates(air *a, checkpoint *from) {
     arena_free(&memory);
     return done;
 }
+
+#define TEMPLATES_TYPE(KIND)                                                                       \
+    {                                                                                              \
+        .name = #KIND "_templates", .constructed = true,                                           \
+        .shader = "pass/air/" #KIND "_templates.comp", .names = {air_names, AIR_NAME_COUNT},       \
+        .solver = &KIND##_kernel_table, .unscaled = true, .declare = air_templates_declare,        \
+        .defines = air_templates_defines, .update = air_templates_update,                          \
+    }
+
+const pass_type lbm_templates_type = TEMPLATES_TYPE(lbm);
+const pass_type pyro_templates_type = TEMPLATES_TYPE(pyro);

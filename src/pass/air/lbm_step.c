@@ -96,43 +96,6 @@ static bool lbm_air_give(const air *a, pass *source, kernel *k, uint32_t threads
     return true;
 }
 
-static const pass_kernel source_kernels[AIR_SOURCE_KERNELS] = {
-    [AIR_EVALUATE] = {.define = "STAGE_EVALUATE"},
-    [AIR_MARK] = {.define = "STAGE_MARK"},
-    [AIR_GIVE] = {.shader = "pass/air/lbm/give.comp", .without_fields = true},
-};
-
-const pass_type lbm_source_type = {
-    .name = "lbm_source",
-    .constructed = true,
-    .shader = "pass/air/lbm_source.comp",
-    .kernels = source_kernels,
-    .kernel_count = AIR_SOURCE_KERNELS,
-    .names = {air_names, AIR_NAME_COUNT},
-    .solver = &lbm_kernel_table,
-    .unscaled = true,
-    .meshes = PASS_USES_MESHES,
-    .declare = air_source_declare,
-    .defines = air_source_defines,
-    .list_memory = air_source_list_memory,
-    .update = air_source_update,
-    .destroy = air_source_destroy,
-};
-
-const pass_type lbm_templates_type = {
-    .name = "lbm_templates",
-    .constructed = true,
-    .shader = "pass/air/lbm_templates.comp",
-    .kernels = &air_templates_kernel,
-    .kernel_count = 1,
-    .names = {air_names, AIR_NAME_COUNT},
-    .solver = &lbm_kernel_table,
-    .unscaled = true,
-    .declare = air_templates_declare,
-    .defines = air_templates_defines,
-    .update = air_templates_update,
-};
-
 static const int outputs[] = {N_scalars, N_velocity};
 static const int given[] = {N_density, N_temperature, N_dye, N_velocity, N_pressure};
 

@@ -119,43 +119,6 @@ static bool pyro_air_give(const air *a, pass *source, kernel *k, uint32_t thread
     return true;
 }
 
-static const pass_kernel source_kernels[AIR_SOURCE_KERNELS] = {
-    [AIR_EVALUATE] = {.define = "STAGE_EVALUATE"},
-    [AIR_MARK] = {.define = "STAGE_MARK"},
-    [AIR_GIVE] = {.shader = "pass/air/pyro/give.comp", .without_fields = true},
-};
-
-const pass_type pyro_source_type = {
-    .name = "pyro_source",
-    .constructed = true,
-    .shader = "pass/air/pyro_source.comp",
-    .kernels = source_kernels,
-    .kernel_count = AIR_SOURCE_KERNELS,
-    .names = {air_names, AIR_NAME_COUNT},
-    .solver = &pyro_kernel_table,
-    .unscaled = true,
-    .meshes = PASS_USES_MESHES,
-    .declare = air_source_declare,
-    .defines = air_source_defines,
-    .list_memory = air_source_list_memory,
-    .update = air_source_update,
-    .destroy = air_source_destroy,
-};
-
-const pass_type pyro_templates_type = {
-    .name = "pyro_templates",
-    .constructed = true,
-    .shader = "pass/air/pyro_templates.comp",
-    .kernels = &air_templates_kernel,
-    .kernel_count = 1,
-    .names = {air_names, AIR_NAME_COUNT},
-    .solver = &pyro_kernel_table,
-    .unscaled = true,
-    .declare = air_templates_declare,
-    .defines = air_templates_defines,
-    .update = air_templates_update,
-};
-
 static const pass_fluid_field fields[] = {
     {"temperature", 0, 1}, {"fuel", 1, 1},       {"soot", 2, 1},
     {"velocity", 4, 3},    {"pressure", 7, 1},   {"burn", 8, 1},
