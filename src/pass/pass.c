@@ -95,17 +95,26 @@ pass_key pass_find_key(const pass *p, const char *name, size_t *index) {
     return PASS_UNKNOWN;
 }
 
-// "march: unknown uniform 'stepz'; did you mean 'steps'?" over all names of the pass.
-static bool unknown(const pass *p, const char *what, const char *name) {
+size_t pass_most_keys(const pass *p) {
+    const shader_interface *face = p->face;
+    return face->uniform_count + face->option_count + face->field_count + face->image_count;
+}
+
+size_t pass_list_keys(const pass *p, const char **out) {
     const shader_interface *face = p->face;
     size_t count = 0;
-    size_t total = face->uniform_count + face->option_count + face->field_count + face->image_count;
-    const char **names = mem_alloc((total + 1) * sizeof *names);
-    for (size_t i = 0; i < face->uniform_count; i++) names[count++] = face->uniforms[i].name;
-    for (size_t i = 0; i < face->option_count; i++) names[count++] = face->options[i].name;
-    for (size_t i = 0; i < face->field_count; i++) names[count++] = face->fields[i].name;
+    for (size_t i = 0; i < face->uniform_count; i++) out[count++] = face->uniforms[i].name;
+    for (size_t i = 0; i < face->option_count; i++) out[count++] = face->options[i].name;
+    for (size_t i = 0; i < face->field_count; i++) out[count++] = face->fields[i].name;
     for (size_t i = 0; i < face->image_count; i++)
-        if (!face->images[i].output) names[count++] = face->images[i].name;
+        if (!face->images[i].output) out[count++] = face->images[i].name;
+    return count;
+}
+
+// "march: unknown uniform 'stepz'; did you mean 'steps'?" over all names of the pass.
+static bool unknown(const pass *p, const char *what, const char *name) {
+    const char **names = mem_alloc((pass_most_keys(p) + 1) * sizeof *names);
+    size_t count = pass_list_keys(p, names);
     names[count++] = "resolution";
     const char *near = str_nearest(name, names, count);
     if (near) {

@@ -192,6 +192,8 @@ void pass_set_bake(pass *p, field_grid *grid); // bake only: the grid it fills
 // Tells what `name` may be set as, for the generic setter of Lua and --set.
 typedef enum pass_key { PASS_UNKNOWN, PASS_UNIFORM, PASS_OPTION, PASS_FIELD, PASS_IMAGE } pass_key;
 pass_key pass_find_key(const pass *p, const char *name, size_t *index);
+size_t pass_most_keys(const pass *p);                   // at least as many as there are
+size_t pass_list_keys(const pass *p, const char **out); // such names; returns how many
 
 bool pass_declare(pass *p); // checks that what is required is there; adds images and passes
 // Called when all is declared, before check and build. A second call does nothing.

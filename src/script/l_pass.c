@@ -196,17 +196,11 @@ static const value_desc *reserved_keys(void) {
 }
 
 static void unknown_key(lua_State *L, const pass_call *call, const char *key) {
-    const shader_interface *face = call->face;
-    size_t total = face->uniform_count + face->option_count + face->field_count + face->image_count;
+    size_t total = pass_most_keys(call->pass);
     for (const value_desc *k = reserved_keys(); k->name; k++) total++;
     for (const value_desc *k = call->own; k && k->name; k++) total++;
     const char **known = lua_newuserdatauv(L, total * sizeof *known, 0);
-    size_t count = 0;
-    for (size_t i = 0; i < face->uniform_count; i++) known[count++] = face->uniforms[i].name;
-    for (size_t i = 0; i < face->option_count; i++) known[count++] = face->options[i].name;
-    for (size_t i = 0; i < face->field_count; i++) known[count++] = face->fields[i].name;
-    for (size_t i = 0; i < face->image_count; i++)
-        if (!face->images[i].output) known[count++] = face->images[i].name;
+    size_t count = pass_list_keys(call->pass, known);
     for (const value_desc *k = reserved_keys(); k->name; k++) known[count++] = k->name;
     for (const value_desc *k = call->own; k && k->name; k++)
         if (!script_key_find(reserved_keys(), k->name)) known[count++] = k->name;
