@@ -11,6 +11,11 @@ typedef struct compiler_order {
     bool strange; // a stranger wrote a part of it: the code must be validated too (unit.h)
 } compiler_order;
 
+typedef struct compiler_answer { // what the reader sends: this, then `size` bytes
+    glsl_outcome outcome;
+    size_t size;
+} compiler_answer;
+
 // Compiles a text. True when the compiler gave an answer, which may be a refusal; free its data
 // with mem_free. False with a message without a position, such as "the compiler ran out of time (10
 // s)". Any thread.

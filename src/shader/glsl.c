@@ -1,4 +1,4 @@
-// GLSL to SPIR-V by glslang, in this process: compiler.c runs it where it can do no harm.
+// GLSL to SPIR-V by glslang, in this process: compiler_work.c runs it where it can do no harm.
 //
 // Vulkan's rules are relaxed, so that glslang itself gathers loose uniforms into one block, in
 // order of declaration. Once macros are expanded, statements of extreme length are refused, because
@@ -7,7 +7,6 @@
 #include <ctype.h>
 #include <glslang/Include/glslang_c_interface.h>
 #include <glslang/Public/resource_limits_c.h>
-#include <glslang/build_info.h>
 #include <pthread.h>
 #include <string.h>
 
@@ -21,10 +20,6 @@ static pthread_once_t started = PTHREAD_ONCE_INIT;
 
 static void glslang_start(void) {
     glslang_initialize_process();
-}
-
-uint32_t glsl_version(void) {
-    return GLSLANG_VERSION_MAJOR * 10000 + GLSLANG_VERSION_MINOR * 100 + GLSLANG_VERSION_PATCH;
 }
 
 static glsl_answer with_log(glsl_outcome outcome, const char *log) {
