@@ -96,7 +96,8 @@ bool path_require_all_inside(const char *root, const char *const *paths, size_t 
 bool path_split_inside(char real_root[PATH_CAP], char rest[PATH_CAP], const char *root,
                        const char *path);
 
-// Return the folder of the running program, and the user's cache folder for `name`, which is
-// created on demand ($ROIL_CACHE_DIR, else $XDG_CACHE_HOME/roil, else ~/.cache/roil).
-bool path_program_folder(char out[PATH_CAP]);
+// Return the folder of the file that holds this code (the running program, or the library that it
+// has loaded), and the user's cache folder for `name`, which is created on demand ($ROIL_CACHE_DIR,
+// else $XDG_CACHE_HOME/roil, else ~/.cache/roil).
+bool path_own_folder(char out[PATH_CAP]);
 bool path_cache_folder(char out[PATH_CAP], const char *name);

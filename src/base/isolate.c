@@ -44,11 +44,12 @@ static struct {
 // ---- the reader's process ---------------------------------------------------------------------
 
 static bool find_reader(char out[PATH_CAP]) {
-    static const char *const places[] = {"roil-reader", "../libexec/roil/roil-reader"};
+    static const char *const places[] = {"roil-reader", "../libexec/roil/roil-reader",
+                                         "../../libexec/roil/roil-reader"}; // lib/ARCHITECTURE
     const char *named = reader.program[0] ? reader.program : getenv("ROIL_READER");
     char folder[PATH_CAP];
     if (named && named[0]) return str_copy(out, PATH_CAP, named) || path_too_long(named);
-    if (!path_program_folder(folder)) return false;
+    if (!path_own_folder(folder)) return false;
     for (size_t i = 0; i < COUNT_OF(places); i++)
         if (path_join(out, folder, places[i]) && access(out, X_OK) == 0) return true;
     return err_set("%s: no roil-reader here, which reads files and shaders; set ROIL_READER",

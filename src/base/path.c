@@ -2,9 +2,11 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/str.h"
+#include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
+#include <link.h>
 #include <linux/openat2.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -157,12 +159,20 @@ bool path_split_inside(char real_root[PATH_CAP], char rest[PATH_CAP], const char
     return true;
 }
 
-bool path_program_folder(char out[PATH_CAP]) {
-    char program[PATH_CAP];
-    ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
-    if (length < 0) return err_set("/proc/self/exe: %s", strerror(errno));
-    program[length] = '\0';
-    path_folder(out, program);
+// The loader's name of a library is its path; that of the program is what its caller called it.
+bool path_own_folder(char out[PATH_CAP]) {
+    static const char here;
+    char file[PATH_MAX];
+    Dl_info info;
+    struct link_map *map = NULL;
+    if (dladdr1(&here, &info, (void **)&map, RTLD_DL_LINKMAP) && map && map->l_name[0]) {
+        if (!realpath(map->l_name, file)) return err_set("%s: %s", map->l_name, strerror(errno));
+    } else {
+        ssize_t length = readlink("/proc/self/exe", file, sizeof file - 1);
+        if (length < 0) return err_set("/proc/self/exe: %s", strerror(errno));
+        file[length] = '\0';
+    }
+    path_folder(out, file);
     return true;
 }
 

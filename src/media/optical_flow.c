@@ -1,27 +1,28 @@
 #include "media/optical_flow.h"
 #include "base/error.h"
 #include "base/file.h"
+#include "base/memory.h"
 #include <dlfcn.h>
 #include <pthread.h>
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
 static optical_flow_function *found;
 static char problem[512]; // "" when it was found
 
 static void load(void) {
-    char program[PATH_CAP], folder[PATH_CAP], path[PATH_CAP];
-    ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
-    program[length > 0 ? length : 0] = '\0';
-    path_folder(folder, program);
-    void *library =
-        path_join(path, folder, "libroil-flow.so") ? dlopen(path, RTLD_NOW | RTLD_LOCAL) : NULL;
+    static const char *const places[] = {"libroil-flow.so", "../libexec/roil/libroil-flow.so",
+                                         "../../libexec/roil/libroil-flow.so"};
+    char folder[PATH_CAP], path[PATH_CAP];
+    void *library = NULL;
+    for (size_t i = 0; path_own_folder(folder) && !library && i < COUNT_OF(places); i++)
+        if (path_join(path, folder, places[i])) library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
     void *symbol = library ? dlsym(library, OPTICAL_FLOW_FUNCTION) : NULL;
+    const char *why = symbol ? NULL : dlerror();
     if (symbol)
         memcpy(&found, &symbol, sizeof found);
     else
-        snprintf(problem, sizeof problem, "%s", dlerror());
+        snprintf(problem, sizeof problem, "%s", why ? why : "libroil-flow.so is not there");
 }
 
 bool optical_flow_load(void) {

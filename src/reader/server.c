@@ -76,7 +76,7 @@ static void become_ready(server *s) {
 
 static bool find_program(const char *name, char out[PATH_CAP]) { // beside this one
     char folder[PATH_CAP];
-    return path_program_folder(folder) && path_join(out, folder, name) && access(out, X_OK) == 0;
+    return path_own_folder(folder) && path_join(out, folder, name) && access(out, X_OK) == 0;
 }
 
 static _Noreturn void become_program(const char *name) {

@@ -40,18 +40,19 @@ static bool take_home(char out[PATH_CAP], const char *folder) {
     return is_home(folder) && realpath(folder, real) && str_copy(out, PATH_CAP, real);
 }
 
-// The program may lie in a build folder, in the home itself, or in bin/ of an installation.
+// The program or library may lie in a build folder, in the home itself, or in bin/, lib/ or
+// lib/ARCHITECTURE/ of an installation.
 static bool find_home(char out[PATH_CAP], const char *wanted) {
     if (!wanted) wanted = getenv("ROIL_HOME");
     if (wanted && wanted[0])
         return take_home(out, wanted) ||
                err_set("%s: holds no shaders/ and scripts/ of roil", wanted);
-    char program[PATH_CAP], folder[PATH_CAP];
-    if (!path_program_folder(program)) return false;
-    static const char *const places[] = {"..", ".", "../share/roil", "../.."};
+    char own[PATH_CAP], folder[PATH_CAP];
+    if (!path_own_folder(own)) return false;
+    static const char *const places[] = {"..", ".", "../share/roil", "../../share/roil", "../.."};
     for (size_t i = 0; i < COUNT_OF(places); i++)
-        if (path_join(folder, program, places[i]) && take_home(out, folder)) return true;
-    return err_set("shaders/ and scripts/ of roil are not near %s; set ROIL_HOME", program);
+        if (path_join(folder, own, places[i]) && take_home(out, folder)) return true;
+    return err_set("shaders/ and scripts/ of roil are not near %s; set ROIL_HOME", own);
 }
 
 static char *joined(const char *folder, const char *name) {

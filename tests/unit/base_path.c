@@ -172,7 +172,7 @@ static void cache_folder_follows_the_environment(void **state) {
 static void program_folder_holds_the_program(void **state) {
     (void)state;
     char folder[PATH_CAP];
-    assert_true(path_program_folder(folder));
+    assert_true(path_own_folder(folder));
     assert_true(file_exists(in(folder, program_invocation_short_name).text));
 }
 
