@@ -57,6 +57,19 @@ struct poptContext_s;
 // Prints a message for the error `code` of poptGetNextOpt and returns false. For an unknown option
 // it suggests the nearest of `options`, or lists all of them.
 bool app_refuse_option(struct poptContext_s *context, const struct poptOption *options, int code);
+// Opens the options of a command, `name` as "roil render". `usage` is what else it takes. As popt
+// does for --help, it ends the program where app_describe asks what these options are.
+struct poptContext_s *app_options(const char *name, int argc, const char **argv,
+                                  const struct poptOption *options, const char *usage);
+
+typedef struct app_command {
+    const char *name;
+    int (*run)(int argc, const char **argv);
+    const char *help;
+} app_command;
+// Prints what the tables of commands and options say: as a manual page ("man"), or as what
+// completes a command line ("bash", "zsh"). Returns the status.
+int app_describe(const char *format, const app_command *commands, size_t count);
 
 // ---- frames -----------------------------------------------------------------------------------
 

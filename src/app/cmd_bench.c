@@ -133,8 +133,7 @@ static bool bench_parse(bench_options *o, int argc, const char **argv, poptConte
         APP_DEVICE_ROW(&o->order.device),
         APP_MEMORY_ROW(&o->order.memory),
         POPT_AUTOHELP POPT_TABLEEND};
-    *context = poptGetContext("roil bench", argc, argv, options, 0);
-    poptSetOtherOptionHelp(*context, "SWEEP.lua [options]");
+    *context = app_options("roil bench", argc, argv, options, "SWEEP.lua [options]");
     int option;
     while ((option = poptGetNextOpt(*context)) > 0)
         if (!take_option(o, *context, option)) return false;

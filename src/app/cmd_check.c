@@ -47,8 +47,7 @@ int cmd_check(int argc, const char **argv) {
                                          APP_TIME_ROW(&desc.time_limit),
                                          POPT_AUTOHELP POPT_TABLEEND};
     app_settings settings = {0};
-    poptContext context = poptGetContext("roil check", argc, argv, options, 0);
-    poptSetOtherOptionHelp(context, "EFFECT.lua...");
+    poptContext context = app_options("roil check", argc, argv, options, "EFFECT.lua...");
     int code, status;
     while ((code = poptGetNextOpt(context)) > 0) app_add_preset(&settings, poptGetOptArg(context));
     const char **files = poptGetArgs(context);

@@ -89,8 +89,8 @@ int cmd_compare(int argc, const char **argv) {
          "pixels per degree of the observer's sight, for FLIP (default: 67)", "X"},
         APP_MEMORY_ROW(&memory),
         POPT_AUTOHELP POPT_TABLEEND};
-    poptContext context = poptGetContext("roil compare", argc, argv, options, 0);
-    poptSetOtherOptionHelp(context, "A.png|A.exr B.png|B.exr");
+    poptContext context =
+        app_options("roil compare", argc, argv, options, "A.png|A.exr B.png|B.exr");
     int code = poptGetNextOpt(context), status;
     job.how.a = poptGetArg(context);
     job.how.b = poptGetArg(context);

@@ -21,9 +21,9 @@ static int export_raw(int argc, const char **argv) {
         {"grid", 'g', POPT_ARG_STRING, &job.grid, 0, "which grid (default: density)", "NAME"},
         {"type", 't', POPT_ARG_STRING, &job.type, 0, "u8, u16, f16 or f32 (default: u8)", "TYPE"},
         POPT_AUTOHELP POPT_TABLEEND};
-    poptContext context = poptGetContext("roil export", argc, argv, options, 0);
-    poptSetOtherOptionHelp(context, "raw 'FILES*.vdb' -o FILE.raw (see also: roil export vdb "
-                                    "--help, roil export sheet --help)");
+    poptContext context = app_options("roil export", argc, argv, options,
+                                      "raw 'FILES*.vdb' -o FILE.raw (see also: roil export vdb "
+                                      "--help, roil export sheet --help)");
     int code = poptGetNextOpt(context), status = APP_DONE;
     const char *format = poptGetArg(context);
     job.pattern = poptGetArg(context);

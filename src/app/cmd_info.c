@@ -163,9 +163,9 @@ int cmd_info(int argc, const char **argv) {
         APP_ASSETS_ROW(&j.assets),
         APP_MEMORY_ROW(&j.memory),
         POPT_AUTOHELP POPT_TABLEEND};
-    poptContext context = poptGetContext("roil info", argc, argv, options, 0);
-    poptSetOtherOptionHelp(context, "[device | passes [NAME] | fields [NAME] | effects | params "
-                                    "EFFECT.lua | graph EFFECT.lua | FILE.vdb]");
+    poptContext context = app_options("roil info", argc, argv, options,
+                                      "[device | passes [NAME] | fields [NAME] | effects | params "
+                                      "EFFECT.lua | graph EFFECT.lua | FILE.vdb]");
     int code, status;
     bool right = true;
     while (right && (code = poptGetNextOpt(context)) > 0) {

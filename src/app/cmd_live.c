@@ -85,8 +85,7 @@ static bool live_parse(job *j, int argc, const char **argv, poptContext *context
         {"after-hang", '\0', POPT_ARG_STRING | POPT_ARGFLAG_DOC_HIDDEN, &j->after_hang, 0, NULL,
          NULL},
         POPT_AUTOHELP POPT_TABLEEND};
-    *context = poptGetContext("roil live", argc, argv, options, 0);
-    poptSetOtherOptionHelp(*context, "[EFFECT.lua] [options]");
+    *context = app_options("roil live", argc, argv, options, "[EFFECT.lua] [options]");
     int option;
     while ((option = poptGetNextOpt(*context)) > 0)
         if (!take_option(j, *context, option)) return false;

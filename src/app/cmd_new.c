@@ -76,8 +76,7 @@ int cmd_new(int argc, const char **argv) {
          "campfire)",
          "EFFECT|FILE.lua"},
         POPT_AUTOHELP POPT_TABLEEND};
-    poptContext context = poptGetContext("roil new", argc, argv, options, 0);
-    poptSetOtherOptionHelp(context, "NAME [--from EFFECT]");
+    poptContext context = app_options("roil new", argc, argv, options, "NAME [--from EFFECT]");
     int code = poptGetNextOpt(context), status;
     const char *name = poptGetArg(context), *more = poptGetArg(context);
     if (code < -1) {

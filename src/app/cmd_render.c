@@ -207,8 +207,7 @@ static bool render_parse(job *j, int argc, const char **argv, poptContext *conte
          "EXR files of the tone-mapped picture with alpha, linear and premultiplied", NULL},
         app_device_rows(&j->device),
         POPT_AUTOHELP POPT_TABLEEND};
-    *context = poptGetContext("roil render", argc, argv, options, 0);
-    poptSetOtherOptionHelp(*context, "EFFECT.lua [options]");
+    *context = app_options("roil render", argc, argv, options, "EFFECT.lua [options]");
     int option;
     while ((option = poptGetNextOpt(*context)) > 0)
         if (!take_option(j, *context, option)) return false;

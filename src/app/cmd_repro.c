@@ -263,8 +263,8 @@ int cmd_repro(int argc, const char **argv) {
         {"output", 'o', POPT_ARG_STRING, &j->output, 0, "keep what was made again", "FILE"},
         app_device_rows(&j->device),
         POPT_AUTOHELP POPT_TABLEEND};
-    poptContext context = poptGetContext("roil repro", argc, argv, options, 0);
-    poptSetOtherOptionHelp(context, "FILE.png|exr|mp4|vdb [EFFECT.lua]");
+    poptContext context =
+        app_options("roil repro", argc, argv, options, "FILE.png|exr|mp4|vdb [EFFECT.lua]");
     int code = poptGetNextOpt(context), status;
     j->file = poptGetArg(context);
     j->named = poptGetArg(context);

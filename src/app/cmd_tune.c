@@ -144,8 +144,8 @@ static bool tune_parse(tune_options *o, int argc, const char **argv, poptContext
         APP_DEVICE_ROW(&o->order.device),
         APP_MEMORY_ROW(&o->memory),
         POPT_AUTOHELP POPT_TABLEEND};
-    *context = poptGetContext("roil tune", argc, argv, options, 0);
-    poptSetOtherOptionHelp(*context, "EFFECT.lua --max-ms MS | --max-error E [options]");
+    *context = app_options("roil tune", argc, argv, options,
+                           "EFFECT.lua --max-ms MS | --max-error E [options]");
     int option;
     while ((option = poptGetNextOpt(*context)) > 0)
         if (!take_option(o, *context, option)) return false;

@@ -130,8 +130,8 @@ static bool sheet_parse(job *j, int argc, const char **argv, poptContext *contex
          "NAME|FILE.lua"},
         app_device_rows(&j->device),
         POPT_AUTOHELP POPT_TABLEEND};
-    *context = poptGetContext("roil export sheet", argc, argv, options, 0);
-    poptSetOtherOptionHelp(*context, "EFFECT.lua -o fire.png [options]");
+    *context =
+        app_options("roil export sheet", argc, argv, options, "EFFECT.lua -o fire.png [options]");
     int option;
     while ((option = poptGetNextOpt(*context)) > 0)
         if (!take_option(j, *context, option)) return false;

@@ -92,8 +92,8 @@ static bool export_parse(job *j, int argc, const char **argv, poptContext *conte
          "NAME|FILE.lua"},
         app_device_rows(&j->device),
         POPT_AUTOHELP POPT_TABLEEND};
-    *context = poptGetContext("roil export vdb", argc, argv, options, 0);
-    poptSetOtherOptionHelp(*context, "EFFECT.lua -o DIR/%04d.vdb [options]");
+    *context =
+        app_options("roil export vdb", argc, argv, options, "EFFECT.lua -o DIR/%04d.vdb [options]");
     int option;
     while ((option = poptGetNextOpt(*context)) > 0)
         if (!take_option(j, *context, option)) return false;

@@ -16,11 +16,7 @@
 
 enum { MOST_SHOWN = 8 };
 
-static const struct {
-    const char *name;
-    int (*run)(int argc, const char **argv);
-    const char *help;
-} commands[] = {
+static const app_command commands[] = {
     {"render", cmd_render, "render frames of an effect to pictures and films"},
     {"live", cmd_live, "open a window in which an effect is tuned while it runs"},
     {"new", cmd_new, "make a folder with an effect to begin with, and all that it reads"},
@@ -124,6 +120,8 @@ static int main_run_command(int argc, char **argv) {
         printf("roil %s\n", roil_version());
         return APP_DONE;
     }
+    if (strcmp(wanted, "--describe") == 0)
+        return app_describe(argc > 2 ? argv[2] : "", commands, COUNT_OF(commands));
     for (int i = 2; i < argc; i++)
         if (strcmp(argv[i], "-h") == 0) argv[i] = "--help";
     const char *names[COUNT_OF(commands)];
