@@ -32,7 +32,12 @@ typedef struct roil roil;               // a device and the folders of the libra
 typedef struct roil_effect roil_effect; // one loaded effect file
 typedef struct roil_vulkan roil_vulkan; // a Vulkan device of the host (roil_vulkan.h)
 
-const char *roil_version(void); // such as "1.2.3"; static
+// Semantic: programs built with a version run with later ones of the same major, or while that is 0
+// of the same minor, number. roil_version is that of the library in use, such as "1.2.3"; static.
+#define ROIL_VERSION_MAJOR 0
+#define ROIL_VERSION_MINOR 1
+#define ROIL_VERSION_PATCH 0
+const char *roil_version(void);
 
 // Returns the message of the last error of the calling thread, or "" when there was none. It is
 // valid until the thread's next call of a roil function.

@@ -58,8 +58,8 @@ class Package(Case):
         self.assertGreater(os.path.getsize(self.path("puff.webm")), 300)
 
     def test_libraries_are_its_own(self):
-        loaded = "".join(self.run_hidden("env", "LD_TRACE_LOADED_OBJECTS=1", f"{self.package}/bin/{program}").stdout
-                         for program in ("roil", "roil-reader", "roil-reader-vdb"))
+        loaded = "".join(self.run_hidden("env", "LD_TRACE_LOADED_OBJECTS=1", f"{self.package}/{program}").stdout
+                         for program in ("bin/roil", "libexec/roil/roil-reader", "libexec/roil/roil-reader-vdb"))
         self.assertNotIn("not found", loaded)
         for name in ("libopenvdb", "libassimp", "liblua5.4", "libspirv-cross"):
             path = re.search(rf"{name}\S* => (\S+)", loaded).group(1)
