@@ -12,9 +12,20 @@
 // message that names the file, the line and the object.
 //
 // Threads: a roil, its effects and all objects made from them belong to the thread that called
-// roil_create. Functions that take none of these may be called from any thread.
+// roil_create. Functions that take none of these may be called from any thread, and each thread may
+// have roils of its own. Callbacks are called on the thread that made the call, unless they say
+// otherwise.
 //
-// Memory: strings and arrays passed to a function are only read during the call, unless a comment
+// The host's process: nothing is written to stdout or stderr (roil_set_log), no signal handler or
+// locale is set, nothing is forked, and exit() is not called. Files of strangers are read by a
+// child process, roil-reader, whose end the host may see as SIGCHLD, and may ignore.
+//
+// Out of memory is an error of the call (roil_set_allocator). What a call has begun is ended with a
+// reserve of 8 MiB; what is large is asked for before. Then the call fails, and what it was to make
+// is destroyed. Calls that end no earlier than one of another thread of roil's that found no memory
+// fail too. Only when the reserve is used up as well is abort() called.
+//
+// Arrays and strings: those passed to a function are only read during the call, unless a comment
 // says otherwise. Functions that fill an array take its capacity, write at most that many elements
 // and return how many there are, so that a call with a capacity of 0 counts them. Every *_desc and
 // *_options struct may be zero; what 0 means is written at each field.
@@ -52,6 +63,28 @@ typedef struct roil_place {
 // innermost whose file can be read, as of a shader that the script uses. `r` knows where the
 // library's own files lie, and may be NULL. False: it names none.
 bool roil_find_place(const roil *r, const char *message, roil_place *out);
+
+// ---- the host's process -------------------------------------------------------------------------
+
+typedef enum roil_level { ROIL_DEBUG, ROIL_INFO, ROIL_WARNING, ROIL_ERROR } roil_level;
+// Sets who takes messages of at least this level (`level`: a roil_level): `text` is one line or
+// several, without a last newline. Called on any thread, by one at a time; it must not call roil.
+// NULL: nobody, as at the start, unless $ROIL_LOG (debug, info, warning, error) asks for them on
+// stderr. Any thread.
+void roil_set_log(void (*write)(void *user, int level, const char *text), void *user,
+                  roil_level least);
+
+typedef struct roil_allocator {
+    // As realloc of C, and at size 0 as free. Blocks are aligned to 16 bytes. NULL: there is no
+    // memory. Called on any thread. The driver and libraries (libpng, OpenEXR, Jansson) do not use
+    // it.
+    void *(*allocate)(void *user, void *block, size_t size);
+    void *user; // passed to allocate
+} roil_allocator;
+// Sets where the process's roils get memory; NULL: from malloc. False with a message while anything
+// is allocated: call it before all other functions, or when all that they gave is destroyed. Not
+// while another thread is in a function of roil.
+bool roil_set_allocator(const roil_allocator *allocator);
 
 // ---- device -----------------------------------------------------------------------------------
 
@@ -193,6 +226,12 @@ roil_effect_info roil_get_info(const roil_effect *e);
 // only be set by roil_load or roil_live_set. On failure nothing changes.
 bool roil_set(roil_effect *e, const char *name, const char *value);
 bool roil_reset(roil_effect *e, const char *name); // back to the script's own value
+// The same for an engine that sets many numbers in each frame: of a control by its number
+// (roil_find_control), which stays the same as long as the effect. `count` is its components, 1 to
+// 4: numbers in its unit, linear Rec.709 of a colour, 0 or 1 of a bool, of an enum the index of the
+// word. False with a message, and nothing changes: the control has another count of numbers, or
+// none (a palette, a curve, events), or one of them is out of range.
+bool roil_set_floats(roil_effect *e, size_t control, const float *values, int count);
 
 // Keeps an image of the graph, so that it can be saved or inspected: "march.color", or "march" for
 // the pass's first output. Takes effect with the next roil_prepare, which preserves histories.

@@ -2,6 +2,7 @@
 #include "app/app.h"
 #include "base/error.h"
 #include "base/file.h"
+#include "base/log.h"
 #include "base/memory.h"
 #include "base/str.h"
 #include <errno.h>
@@ -146,6 +147,8 @@ static int main_run_command(int argc, char **argv) {
 int main(int argc, char **argv) {
     // A tree of JSON that misses what had no memory would be written as if it were whole.
     json_set_alloc_funcs(mem_alloc, mem_free);
+    err_own_process();
+    log_set_target(log_to_stderr, NULL);
     int status = open_streams() ? main_finish(main_run_command(argc, argv)) : APP_BAD_INPUT;
     if (!roil_can_exit()) _exit(status);
     return status;

@@ -28,6 +28,7 @@ struct budget {
 };
 
 static const double DEFAULT_SHARE = 0.6;
+enum { LARGE = 1 << 20 }; // bytes
 
 // The share that may be taken: bytes, or a percentage where they are 0. Guarded by `share_lock`.
 static pthread_mutex_t share_lock = PTHREAD_MUTEX_INITIALIZER;
@@ -245,11 +246,22 @@ static bool is_free(const budget *b, uint64_t bytes) { // under the lock
 
 // ---- parts ------------------------------------------------------------------------------------
 
+// Returns whether the heap has as much. What is small is never asked for: there is a reserve.
+static bool heap_has(const budget *b, uint64_t bytes, const char *label) {
+    if (b != &host || bytes < LARGE) return true;
+    void *block = bytes <= SIZE_MAX ? mem_try(NULL, (size_t)bytes) : NULL;
+    mem_free(block);
+    if (block) return true;
+    err_no_memory((size_t)bytes);
+    return err_prefix("%s: ", label);
+}
+
 budget_part *budget_take(budget *b, uint64_t bytes, const char *label) {
     budget_row row = {.bytes = bytes};
     budget_part *above = b->parent ? budget_take(b->parent, bytes, label) : NULL;
     if (b->parent && !above) return NULL;
     str_copy(row.label, sizeof row.label, label);
+    if (!heap_has(b, bytes, label)) return NULL;
     pthread_mutex_lock(&b->lock);
     // Nothing can be had of no bytes, so that a part of them is only a name.
     bool done = bytes == 0 || is_free(b, bytes) || budget_refuse(b, &row, 1, plus(b->sum, bytes));

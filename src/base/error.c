@@ -41,16 +41,31 @@ void err_clear(void) {
     message[0] = '\0';
 }
 
-static void (*leave_child)(void); // NULL: the program itself
+bool err_no_memory(size_t size) {
+    return err_set("out of memory (%zu bytes wanted)", size);
+}
 
-void err_when_out_of_memory(void (*leave)(void)) {
-    leave_child = leave;
+static void (*leave_process)(void); // NULL: none
+static bool leave_at_once, own_process;
+
+void err_when_out_of_memory(void (*leave)(void), bool at_once) {
+    leave_process = leave;
+    leave_at_once = at_once;
+}
+
+bool err_leaves_at_once(void) {
+    return leave_at_once;
+}
+
+void err_own_process(void) {
+    own_process = true;
 }
 
 // Does not use exit(), because other threads still use what its handlers free.
 void err_out_of_memory(size_t size) {
     static atomic_flag ending = ATOMIC_FLAG_INIT;
-    if (leave_child) leave_child();
+    if (leave_process) leave_process();
+    if (!own_process) abort();
     if (!atomic_flag_test_and_set(&ending)) {
         fprintf(stderr, "roil: out of memory (%zu bytes wanted)\n", size);
         _exit(EXIT_FAILURE);

@@ -2,7 +2,7 @@
 //
 // There are three kinds of error, which are never mixed. A bug fails an assert. Bad input makes a
 // function return false or NULL and set a message here, which names file, line and object and says
-// what is accepted. When the host is out of memory, the process prints one line and exits.
+// what is accepted. When the host is out of memory, what the caller began fails (base/memory.h).
 #pragma once
 #include <stdbool.h>
 #include <stddef.h>
@@ -19,8 +19,13 @@ bool err_prefix(const char *format, ...) PRINTF_LIKE(1, 2);
 const char *err_get(void);
 void err_clear(void);
 
-// Ends the process: one line on stderr, exit status 1. No handler of exit() runs.
+bool err_no_memory(size_t size); // false with the message "out of memory (SIZE bytes wanted)"
+// Ends the process by abort(), when even the reserve of memory is used up. Where the process is
+// roil's own: by one line on stderr and exit status 1. No handler of exit() runs.
 __attribute__((noreturn)) void err_out_of_memory(size_t size);
-// Sets a function that err_out_of_memory calls first. A child process ends itself there, with a
-// status that its parent knows.
-void err_when_out_of_memory(void (*leave)(void));
+void err_own_process(void);
+// Sets a function that err_out_of_memory calls first. `at_once`: it is called when memory is short,
+// and no reserve is touched: a child process ends itself there, with a status that its parent
+// knows.
+void err_when_out_of_memory(void (*leave)(void), bool at_once);
+bool err_leaves_at_once(void);

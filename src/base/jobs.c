@@ -36,8 +36,10 @@ jobs *jobs_create(size_t threads, size_t most) {
 static void jobs_run_next(void *user) {
     job *one = user;
     jobs *j = one->of;
+    mem_enter();
     bool done = one->run(one->user);
     one->release(one->user);
+    done = mem_leave(done);
     mem_free(one);
     pthread_mutex_lock(&j->mutex);
     if (!done && !j->failed) str_copy(j->message, sizeof j->message, err_get());

@@ -1,5 +1,6 @@
 #include "base/log.h"
 #include "base/str.h"
+#include <pthread.h>
 #include <stdarg.h>
 #include <stdatomic.h>
 #include <stdio.h>
@@ -24,6 +25,26 @@ void log_set_level(log_level least) {
     atomic_store(&threshold, (int)least);
 }
 
+static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER; // guards what follows
+static void (*target)(void *user, int level, const char *text);
+static void *target_user;
+
+void log_set_target(void (*wanted)(void *user, int level, const char *text), void *user) {
+    pthread_mutex_lock(&lock);
+    target = wanted;
+    if (!wanted) atomic_store(&threshold, -1);
+    target_user = user;
+    pthread_mutex_unlock(&lock);
+}
+
+void log_to_stderr(void *user, int level, const char *text) {
+    (void)user;
+    if (level == LOG_INFO)
+        fprintf(stderr, "%s\n", text);
+    else
+        fprintf(stderr, "%s: %s\n", names[level], text);
+}
+
 void log_write(log_level level, const char *format, ...) {
     if ((int)level < least_level()) return;
     char text[4096];
@@ -32,8 +53,10 @@ void log_write(log_level level, const char *format, ...) {
     vsnprintf(text, sizeof text, format, args);
     va_end(args);
     str_make_printable(text);
-    if (level == LOG_INFO)
-        fprintf(stderr, "%s\n", text);
-    else
-        fprintf(stderr, "%s: %s\n", names[level], text);
+    pthread_mutex_lock(&lock);
+    if (target)
+        target(target_user, level, text);
+    else if (getenv("ROIL_LOG"))
+        log_to_stderr(NULL, level, text);
+    pthread_mutex_unlock(&lock);
 }

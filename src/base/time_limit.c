@@ -3,6 +3,7 @@
 #include "base/time_limit.h"
 #include "base/clock.h"
 #include "base/error.h"
+#include "base/memory.h"
 #include <math.h>
 #include <stdio.h>
 #include <time.h>
@@ -33,6 +34,7 @@ void time_limit_adopt(time_limit *b) {
 
 double time_limit_left(void) {
     const time_limit *b = current;
+    if (mem_is_short()) return 0;
     if (!b) return (double)INFINITY;
     if (atomic_load_explicit(&b->stopped, memory_order_relaxed)) return 0;
     double others = (double)atomic_load_explicit(&b->others, memory_order_relaxed) * 1e-9;
@@ -52,7 +54,9 @@ double time_limit_thread_seconds(void) {
 }
 
 void time_limit_tell(char *out, size_t size) {
-    if (!current || atomic_load(&current->stopped))
+    if (mem_is_short())
+        snprintf(out, size, "out of memory");
+    else if (!current || atomic_load(&current->stopped))
         snprintf(out, size, "given up: nobody waits for it any more");
     else
         snprintf(out, size,

@@ -38,7 +38,7 @@ void time_limit_leave(time_limit *before);
 time_limit *time_limit_now(void);
 void time_limit_adopt(time_limit *b); // makes a thread work under another's limit; NULL: ends that
 
-double time_limit_left(void);                     // seconds; INFINITY: no limit
+double time_limit_left(void); // seconds; INFINITY: no limit; 0 also when memory is short
 void time_limit_charge(double processor_seconds); // adds time of another thread or process
 double time_limit_thread_seconds(void);           // processor time of the calling thread so far
 bool time_limit_check(void);                      // false with a message when no time is left

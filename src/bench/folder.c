@@ -31,7 +31,7 @@ static void keep_in_mind(const char *folder) {
             str_copy(folders[i], sizeof folders[i], folder);
             break;
         }
-    err_when_out_of_memory(remove_all);
+    err_when_out_of_memory(remove_all, false);
 }
 
 bool bench_folder_make(char out[PATH_CAP]) {

@@ -5,6 +5,8 @@
 #include <ctype.h>
 #include <string.h>
 
+enum { NUMBERS_TEXT = 128 }; // more than four numbers or the longest word
+
 // ---- the list ---------------------------------------------------------------------------------
 
 // Palettes and curves are listed as they are declared, and so are uniforms and options.
@@ -167,7 +169,20 @@ static void note_moved(effect *e, control *c, const char *text) {
     }
     for (size_t i = 0; i < size; i++)
         c->text[i] = text[i] && iscntrl((unsigned char)text[i]) ? ' ' : text[i];
-    c->face.moved = c->text;
+    c->face.moved = true;
+    c->as_numbers = false;
+}
+
+// The text of numbers is made when somebody asks for it: the recipe of a picture that is saved.
+const char *effect_control_setting(const effect_control *face) {
+    control *c = (control *)face;
+    if (!face->moved) return NULL;
+    if (!c->as_numbers) return c->text;
+    strbuf text = {0};
+    value_print(face->desc, c->numbers, &text);
+    str_copy(c->text, c->text_capacity, strbuf_text(&text));
+    strbuf_free(&text);
+    return c->text;
 }
 
 static bool is_structure(const control *c) {
@@ -242,7 +257,7 @@ void effect_reset_control(effect *e, control *c) {
     case EFFECT_CONTROL_SCALE:
         break;
     }
-    c->face.moved = NULL;
+    c->face.moved = false;
 }
 
 static bool control_take(effect *e, control *c, const char *text) {
@@ -260,7 +275,7 @@ static bool effect_set_control(effect *e, control *c, const char *text) {
         return true;
     }
     if (!control_take(e, c, text)) return false;
-    if (same) c->face.moved = NULL;
+    if (same) c->face.moved = false;
     return true;
 }
 
@@ -272,6 +287,37 @@ bool effect_set(effect *e, const char *name, const char *text) {
     control *c = find(e, name);
     if (!c) return false;
     return is_structure(c) ? refuse_structure(name) : effect_set_control(e, c, text);
+}
+
+// Sets a message that says why numbers cannot be what is set.
+static bool check_numbers(const control *c, const float *values, int count) {
+    const value_desc *desc = c->face.desc;
+    if (is_structure(c)) return refuse_structure(c->face.name);
+    if (c->face.kind == EFFECT_CONTROL_PALETTE || c->face.kind == EFFECT_CONTROL_CURVE ||
+        c->face.kind == EFFECT_CONTROL_EVENTS)
+        return err_set("%s is no number; it is set by its text", c->face.name);
+    if (count != desc->components)
+        return err_set("%s has %d numbers, not %d", c->face.name, desc->components, count);
+    int wrong = value_find_wrong(desc, values, count);
+    return wrong < 0 || value_refuse(desc, values[wrong], "%s", c->face.name);
+}
+
+bool effect_set_numbers(effect *e, size_t control_index, const float *values, int count) {
+    control *c = e->controls[control_index];
+    float all[4] = {0};
+    if (!check_numbers(c, values, count)) return false;
+    memcpy(all, values, (size_t)count * sizeof *all);
+    forget_old(e, c);
+    if (c->face.kind != EFFECT_CONTROL_PARAM)
+        field_control_put(e, c, all);
+    else if (effect_set_value(e, c->face.index, all))
+        effect_forget_moved(e, c->face.index);
+    else
+        return false;
+    if (!c->text) c->text = arena_alloc(&e->memory, c->text_capacity = NUMBERS_TEXT);
+    memcpy(c->numbers, all, sizeof all);
+    c->face.moved = c->as_numbers = true;
+    return true;
 }
 
 bool effect_reset(effect *e, const char *name) {

@@ -150,20 +150,25 @@ bool effect_add_loaded(effect *e, const char *group, const value_desc *desc, con
 
 // ---- setting and saying -------------------------------------------------------------------------
 
-bool field_control_set(effect *e, control *c, const char *text) {
+void field_control_put(effect *e, control *c, const float value[4]) {
     const value_desc *desc = c->face.desc;
-    float value[4];
-    if (!value_parse(desc, c->face.name, text, value)) return false;
+    const size_t size = sizeof c->numbers;
     if (!c->slot) { // programs and the host read it in each frame, or when it is loaded
-        memcpy(c->nodes[0]->value, value, sizeof value);
-        return true;
+        memcpy(c->nodes[0]->value, value, size);
+        return;
     }
     field **node = &c->nodes[!c->turn];
     if (!*node) *node = field_constant(&e->memory, 4, value);
     (*node)->components = desc->components == 2 ? 3 : desc->components; // of a field: 1, 3 or 4
-    memcpy((*node)->value, value, sizeof value);
+    memcpy((*node)->value, value, size);
     *c->slot = *node;
     c->turn = !c->turn;
+}
+
+bool field_control_set(effect *e, control *c, const char *text) {
+    float value[4];
+    if (!value_parse(c->face.desc, c->face.name, text, value)) return false;
+    field_control_put(e, c, value);
     return true;
 }
 

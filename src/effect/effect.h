@@ -329,7 +329,7 @@ typedef struct effect_control {
     size_t pass, index;     // of a pass, and of its uniform or option; of a parameter
     size_t layer;           // of a list of layers, from 1, that the number is of; 0: of none
     const char *initial;    // as text, before any setting
-    const char *moved;      // the setting that holds, as text; NULL: the script's own value
+    bool moved;             // a setting holds: effect_control_setting
 } effect_control;
 // Parameters, palettes and curves, the scene, then pass by pass; complete once the script has run.
 size_t effect_control_count(const effect *e);
@@ -349,6 +349,8 @@ const field *effect_control_original(const effect_control *c);
 // What counts where there is no field: the default of a uniform, here or in the pass that it is
 // taken from.
 const float *effect_control_default(const effect *e, const effect_control *c);
+// The setting that holds, as text, until the next one; NULL: the script's own value does.
+const char *effect_control_setting(const effect_control *c);
 // The value of now, as effect_set takes it; of what the script moves how it does.
 void effect_print_control(const effect *e, const effect_control *c, strbuf *out);
 
@@ -359,6 +361,9 @@ void effect_print_control(const effect *e, const effect_control *c, strbuf *out)
 // resolution of a pass ("march.resolution"), can be set by effect_desc.settings only. Names not
 // known get a suggestion. Repeating it takes no memory.
 bool effect_set(effect *e, const char *name, const char *text);
+// The same of a control in the list, to numbers, as many as it has: of a word its number, of true
+// and false 1 and 0. False with a message where text alone can say it. Makes no text.
+bool effect_set_numbers(effect *e, size_t control, const float *values, int count);
 bool effect_reset(effect *e, const char *name); // to what the script says
 bool effect_set_value(effect *e, size_t param, const float value[4]);
 

@@ -68,8 +68,10 @@ void effect_forget_moved(effect *e, size_t param);                      // a use
 
 typedef struct control {
     effect_control face; // first: effect_get_control gives it out
-    char *text;          // of face.moved
+    char *text;          // of the setting that holds
     size_t text_capacity;
+    float numbers[4]; // the setting, where there is no text yet
+    bool as_numbers;
     // Of a uniform and a value of the scene: where its field is held, what the script gave (NULL:
     // the default), and two constants that settings take in turn. Of a number of a field and one
     // that is read while it loads: a constant, whose value settings change, and a copy before any.
@@ -100,6 +102,8 @@ control *effect_add_member(effect *e, const char *group, const value_desc *desc,
 // says the value of now as `set` takes it, or how the script moves it.
 bool param_set(effect *e, control *c, const char *text);
 void param_print(const effect *e, const control *c, strbuf *out);
+// Of numbers that were checked.
+void field_control_put(effect *e, control *c, const float value[4]);
 bool field_control_set(effect *e, control *c, const char *text);
 void field_control_print(const effect *e, const control *c, strbuf *out);
 void pass_control_add_all(effect *e, size_t pass);

@@ -20,7 +20,7 @@ void recipe_write(const effect *e, double frame, uint32_t width, uint32_t height
     strbuf settings = {0};
     for (size_t i = 0; i < effect_control_count(e); i++) {
         const effect_control *c = effect_get_control(e, i);
-        if (c->moved) strbuf_add(&settings, "%s=%s\n", c->name, c->moved);
+        if (c->moved) strbuf_add(&settings, "%s=%s\n", c->name, effect_control_setting(c));
     }
     out[0] = (png_text){"Software", "roil " ROIL_VERSION};
     out[1] = (png_text){key_effect, effect_file(e)};

@@ -158,7 +158,8 @@ static bool report_cycle(const graph *g, sorting *s) {
 static bool graph_sort(graph *g) {
     sorting s = {0};
     sorting_begin(&s, g);
-    g->order = mem_resize(g->order, (g->pass_count + 1) * sizeof *g->order);
+    g->order = mem_resize(g->order, g->order_count * sizeof *g->order,
+                          (g->pass_count + 1) * sizeof *g->order);
     g->order_count = 0;
     for (size_t p = 0; p < g->pass_count; p++)
         if (!s.waits[p]) heap_push(&s.ready, (uint32_t)p);

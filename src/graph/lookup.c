@@ -15,8 +15,9 @@ static void link_entry(lookup *l, uint32_t number) {
 }
 
 static void lookup_grow(lookup *l) {
+    mem_free(l->buckets);
     l->bucket_count = l->bucket_count ? l->bucket_count * 2 : 16;
-    l->buckets = mem_resize(l->buckets, l->bucket_count * sizeof *l->buckets);
+    l->buckets = mem_alloc(l->bucket_count * sizeof *l->buckets);
     memset(l->buckets, 0xff, l->bucket_count * sizeof *l->buckets);
     for (size_t i = 0; i < l->count; i++) link_entry(l, (uint32_t)i);
 }

@@ -126,8 +126,8 @@ static bool write_picture(const char *root, const char *path, const png_image *i
     session s = {.name = path};
     s.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &s, png_on_error, warn);
     s.info = s.png ? png_create_info_struct(s.png) : NULL;
-    if (!s.info) err_out_of_memory(sizeof s);
-    bool done = session_encode(&s, image, texts, texts ? text_count : 0);
+    bool done =
+        s.info ? session_encode(&s, image, texts, texts ? text_count : 0) : err_no_memory(sizeof s);
     png_destroy_write_struct(&s.png, &s.info);
     if (done)
         done = root ? file_write_inside(root, path, s.output.text, s.output.length)
@@ -199,8 +199,9 @@ static bool open_input(session *s, const void *data, size_t size, const char *na
     *s = (session){.name = name, .input = data, .size = size};
     s->png = png_create_read_struct(PNG_LIBPNG_VER_STRING, s, png_on_error, warn);
     s->info = s->png ? png_create_info_struct(s->png) : NULL;
-    if (!s->info) err_out_of_memory(sizeof *s);
-    return true;
+    if (s->info) return true;
+    png_destroy_read_struct(&s->png, NULL, NULL);
+    return err_no_memory(sizeof *s);
 }
 
 bool png_decode(const void *data, size_t size, const char *name, const picture_limits *limits,

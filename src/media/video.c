@@ -95,7 +95,7 @@ static bool open_encoder(video *v, double fps) {
     if (!codec && kind->encoders[1]) codec = av.avcodec_find_encoder_by_name(kind->encoders[1]);
     if (!codec) return err_set("%s: this libavcodec encodes no %s", v->path, kind->name);
     AVCodecContext *e = v->encoder = av.avcodec_alloc_context3(codec);
-    if (!e) err_out_of_memory(sizeof *e);
+    if (!e) return err_no_memory(sizeof *e);
     AVRational rate = av.av_d2q(fps, TIME_BASE_MAX);
     if (!best && (rate.num > 65535 || rate.den > 65535)) rate = av.av_d2q(fps, 65535);
     e->width = (int)v->even_width;
@@ -124,7 +124,7 @@ static bool open_encoder(video *v, double fps) {
 
 static bool open_file(video *v) {
     v->stream = av.avformat_new_stream(v->format, NULL);
-    if (!v->stream) err_out_of_memory(sizeof *v->stream);
+    if (!v->stream) return err_no_memory(sizeof *v->stream);
     v->stream->time_base = v->encoder->time_base;
     v->stream->avg_frame_rate = v->encoder->framerate;
     int code = av.avcodec_parameters_from_context(v->stream->codecpar, v->encoder);

@@ -6,6 +6,7 @@
 // which it forwards such requests. Jobs of another program, which loads libraries that no other job
 // needs, have one too.
 #include "base/isolate_wire.h"
+#include "base/log.h"
 #include "base/memory.h"
 #include "base/stack.h"
 #include "reader/worker.h"
@@ -263,6 +264,7 @@ int reader_serve(const reader_job *jobs, size_t count) {
         fprintf(stderr, "roil-reader: roil starts it, to read files and shaders\n");
         return 2;
     }
+    log_set_target(log_to_stderr, NULL); // which the first process reads
     s = (server){.jobs = jobs, .job_count = count, .process = getpid()};
     fcntl(WIRE_CONTROL, F_SETFD, FD_CLOEXEC);
     signal(SIGPIPE, SIG_IGN);

@@ -61,7 +61,7 @@ void worker_run(const reader_job *job, const wire_request *r, const int files[WI
     sigemptyset(&none);
     sigprocmask(SIG_SETMASK, &none, NULL);
     atexit(worker_leave);
-    err_when_out_of_memory(worker_leave);
+    err_when_out_of_memory(worker_leave, true);
     worker_limit(&r->limits);
     worker_confine();
     err_clear();

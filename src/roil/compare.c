@@ -183,20 +183,23 @@ static bool compare_pictures(const roil_comparison *how, arena *memory, roil_dif
 }
 
 bool roil_compare(const roil_comparison *how, roil_difference *out) {
+    mem_enter();
     double ppd = how->pixels_per_degree;
     *out = (roil_difference){0};
     if (ppd != 0 && !(ppd >= 1 && ppd <= 1000))
-        return err_set("%g pixels per degree; 1 to 1000 are accepted", ppd);
+        return mem_leave(err_set("%g pixels per degree; 1 to 1000 are accepted", ppd));
     if (!(fabsf(how->exposure) <= 64))
-        return err_set("exposure of %g stops; -64 to 64 are accepted", (double)how->exposure);
+        return mem_leave(
+            err_set("exposure of %g stops; -64 to 64 are accepted", (double)how->exposure));
     const char *const pictures[] = {how->difference, how->beside};
     for (size_t i = 0; i < COUNT_OF(pictures); i++)
         if (pictures[i] && !str_ends_with(pictures[i], ".png"))
-            return err_set("%s: a difference cannot be written; accepted: .png", pictures[i]);
+            return mem_leave(
+                err_set("%s: a difference cannot be written; accepted: .png", pictures[i]));
     arena memory = {0};
     budget_part *parts[PARTS] = {0};
     bool done = take_memory(how, parts) && compare_pictures(how, &memory, out);
     arena_free(&memory);
     for (int i = 0; i < PARTS; i++) budget_give(parts[i]);
-    return done;
+    return mem_leave(done);
 }

@@ -100,7 +100,7 @@ void roil_get_control(roil_effect *e, size_t index, roil_control *out) {
         .layer = c->layer,
         .object = c->kind == EFFECT_CONTROL_LIGHT || c->kind == EFFECT_CONTROL_MATERIAL ||
                   c->kind == EFFECT_CONTROL_PLACE || c->kind == EFFECT_CONTROL_LOADED,
-        .moved = c->moved != NULL};
+        .moved = c->moved};
     if (c->kind == EFFECT_CONTROL_PARAM)
         fill_param(effect_get_param(e->effect, c->index), out);
     else if (c->kind == EFFECT_CONTROL_OPTION || c->kind == EFFECT_CONTROL_SCALE)
@@ -124,11 +124,20 @@ bool roil_find_control(roil_effect *e, const char *name, size_t *index) {
 }
 
 bool roil_set(roil_effect *e, const char *name, const char *value) {
-    return effect_set(e->effect, name, value);
+    mem_enter();
+    return mem_leave(effect_set(e->effect, name, value));
+}
+
+bool roil_set_floats(roil_effect *e, size_t control, const float *values, int count) {
+    if (control >= effect_control_count(e->effect))
+        return err_set("there is no control %zu", control);
+    mem_enter();
+    return mem_leave(effect_set_numbers(e->effect, control, values, count));
 }
 
 bool roil_reset(roil_effect *e, const char *name) {
-    return effect_reset(e->effect, name);
+    mem_enter();
+    return mem_leave(effect_reset(e->effect, name));
 }
 
 static char *finish(strbuf *text) {
@@ -137,11 +146,12 @@ static char *finish(strbuf *text) {
 }
 
 char *roil_control_text(roil_effect *e, const char *name) {
+    mem_enter();
     const effect_control *c = effect_find_control(e->effect, name);
-    if (!c) return NULL;
+    if (!c) return roil_leave_text(NULL);
     strbuf text = {0};
     effect_print_control(e->effect, c, &text);
-    return finish(&text);
+    return roil_leave_text(finish(&text));
 }
 
 // ---- palettes and curves ------------------------------------------------------------------------
@@ -154,27 +164,30 @@ static const effect_control *find_kind(roil_effect *e, const char *name, effect_
 }
 
 bool roil_get_palette(roil_effect *e, const char *name, roil_palette *out) {
+    mem_enter();
     const effect_control *c = find_kind(e, name, EFFECT_CONTROL_PALETTE);
-    if (!c) return false;
+    if (!c) return mem_leave(false);
     const palette *p = effect_control_palette(c);
     const palette_desc *desc = palette_get_desc(p);
     *out = (roil_palette){.keyed = desc->key_count > 1};
     palette_range(p, &out->min, &out->max);
-    if (!desc->key_count) return true;
+    if (!desc->key_count) return mem_leave(true);
     out->count = desc->keys[0].count;
     for (size_t i = 0; i < out->count; i++) {
         out->stops[i].at = desc->keys[0].stops[i].at;
         memcpy(out->stops[i].color, desc->keys[0].stops[i].color, sizeof out->stops[i].color);
     }
-    return true;
+    return mem_leave(true);
 }
 
 bool roil_get_curve(roil_effect *e, const char *name, roil_curve *out) {
+    mem_enter();
     const effect_control *control = find_kind(e, name, EFFECT_CONTROL_CURVE);
-    if (!control) return false;
+    if (!control) return mem_leave(false);
     const curve *c = effect_control_curve(control);
     if (c->count > ROIL_MAX_STOPS)
-        return err_set("%s has %zu keys; at most %d can be edited", name, c->count, ROIL_MAX_STOPS);
+        return mem_leave(
+            err_set("%s has %zu keys; at most %d can be edited", name, c->count, ROIL_MAX_STOPS));
     *out = (roil_curve){.count = c->count,
                         .components = c->components,
                         .shape = curve_shape_name(c->shape),
@@ -184,13 +197,14 @@ bool roil_get_curve(roil_effect *e, const char *name, roil_curve *out) {
         out->keys[i].time = c->keys[i].time;
         memcpy(out->keys[i].value, c->keys[i].value, sizeof out->keys[i].value);
     }
-    return true;
+    return mem_leave(true);
 }
 
 bool roil_sample_palette(roil_effect *e, const char *name, double time, float (*out)[4],
                          size_t count) {
+    mem_enter();
     const effect_control *c = find_kind(e, name, EFFECT_CONTROL_PALETTE);
-    if (!c) return false;
+    if (!c) return mem_leave(false);
     const palette *p = effect_control_palette(c);
     float min, max;
     palette_range(p, &min, &max);
@@ -198,18 +212,20 @@ bool roil_sample_palette(roil_effect *e, const char *name, double time, float (*
         float share = count > 1 ? (float)i / (float)(count - 1) : 0;
         palette_eval(p, time, mixf(min, max, share), out[i]);
     }
-    return true;
+    return mem_leave(true);
 }
 
 bool roil_sample_curve(roil_effect *e, const char *name, const double *times, float (*out)[4],
                        size_t count) {
+    mem_enter();
     const effect_control *c = find_kind(e, name, EFFECT_CONTROL_CURVE);
-    if (!c) return false;
+    if (!c) return mem_leave(false);
     for (size_t i = 0; i < count; i++) curve_eval(effect_control_curve(c), times[i], out[i]);
-    return true;
+    return mem_leave(true);
 }
 
 char *roil_palette_text(const roil_palette *p) {
+    mem_enter();
     palette_stop stops[ROIL_MAX_STOPS];
     for (size_t i = 0; i < p->count; i++) {
         stops[i].at = p->stops[i].at;
@@ -217,10 +233,11 @@ char *roil_palette_text(const roil_palette *p) {
     }
     strbuf text = {0};
     palette_print(stops, p->count, &text);
-    return finish(&text);
+    return roil_leave_text(finish(&text));
 }
 
 char *roil_curve_text(const roil_curve *c) {
+    mem_enter();
     curve_key keys[ROIL_MAX_STOPS];
     curve printed = {.components = c->components, .keys = keys, .count = c->count};
     for (int i = 0; i < CURVE_SHAPE_COUNT; i++)
@@ -231,7 +248,7 @@ char *roil_curve_text(const roil_curve *c) {
     }
     strbuf text = {0};
     curve_print(&printed, &text);
-    return finish(&text);
+    return roil_leave_text(finish(&text));
 }
 
 // ---- camera and bounds --------------------------------------------------------------------------

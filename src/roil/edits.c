@@ -463,11 +463,13 @@ static bool write_files(const roil_edits *x, bool back) {
 }
 
 bool roil_edits_write(const roil_edits *x) {
-    return write_files(x, false);
+    mem_enter();
+    return mem_leave(write_files(x, false));
 }
 
 bool roil_edits_undo(const roil_edits *x) {
-    return write_files(x, true);
+    mem_enter();
+    return mem_leave(write_files(x, true));
 }
 
 void roil_edits_free(roil_edits *x) {

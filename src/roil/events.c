@@ -17,19 +17,20 @@ size_t roil_hotkeys(const roil_effect *e, roil_hotkey *out, size_t capacity) {
 // Stores the ray and not the position in the picture, since the camera may be elsewhere when the
 // event is replayed.
 char *roil_event_text(roil_effect *e, const char *key, float x, float y) {
+    mem_enter();
     double now = effect_systems_time(e->effect);
     effect_event event = {.time = isfinite(now) ? now : 0, .numbers = 6};
     size_t count;
     const effect_event *before = effect_events(e->effect, &count);
     if (!str_copy(event.key, sizeof event.key, key)) {
         err_set("key '%s' has too long a name", key);
-        return NULL;
+        return roil_leave_text(NULL);
     }
     if (count >= EFFECT_MOST_EVENTS) {
         err_set("there are %zu events; at most %d are possible", count, EFFECT_MOST_EVENTS);
-        return NULL;
+        return roil_leave_text(NULL);
     }
-    if (!effect_camera_ray(e->effect, x, y, event.at, event.at + 3)) return NULL;
+    if (!effect_camera_ray(e->effect, x, y, event.at, event.at + 3)) return roil_leave_text(NULL);
     effect_event *all = mem_alloc((count + 1) * sizeof *all);
     size_t at = 0; // behind those of its time
     for (size_t i = 0; i < count; i++) all[i + (before[i].time > event.time)] = before[i];
@@ -38,5 +39,5 @@ char *roil_event_text(roil_effect *e, const char *key, float x, float y) {
     strbuf text = {0};
     events_print(all, count + 1, &text);
     mem_free(all);
-    return text.text;
+    return roil_leave_text(text.text);
 }

@@ -142,6 +142,7 @@ static char *describe_export(const exporter *x, const voxel_type *type, float sc
 }
 
 char *roil_export_raw(const roil_export *desc) {
+    mem_enter();
     const voxel_type *type = find_type(desc->type ? desc->type : "u8");
     arena memory = {0};
     // Every voxel is written: the limits are those of a dense frame.
@@ -168,5 +169,5 @@ char *roil_export_raw(const roil_export *desc) {
         grid->destroy(grid, NULL);
     }
     arena_free(&memory);
-    return text;
+    return roil_leave_text(text);
 }

@@ -48,10 +48,11 @@ size_t roil_graph_links(roil_effect *e, roil_graph_link *out, size_t capacity) {
 }
 
 char *roil_graph_fields(roil_effect *e, const char *name) {
+    mem_enter();
     const pass *p = owner_of(e, name);
     if (!p) {
         err_set("no pass '%s'", name);
-        return NULL;
+        return roil_leave_text(NULL);
     }
     const shader_interface *face = pass_interface(p);
     strbuf text = {0};
@@ -62,5 +63,5 @@ char *roil_graph_fields(roil_effect *e, const char *name) {
         field_print(node, &text);
     }
     strbuf_append(&text, "", 0);
-    return text.text;
+    return roil_leave_text(text.text);
 }

@@ -68,9 +68,10 @@ const char *info_device_kind(gpu_kind kind) {
 }
 
 char *roil_info_devices(void) {
+    mem_enter();
     gpu_info infos[16];
     int count = gpu_list(infos, COUNT_OF(infos));
-    if (count < 0) return NULL;
+    if (count < 0) return roil_leave_text(NULL);
     strbuf out = {0};
     for (int i = 0; i < count && i < (int)COUNT_OF(infos); i++) {
         const gpu_info *d = &infos[i];
@@ -81,7 +82,7 @@ char *roil_info_devices(void) {
         if (!d->usable) strbuf_add(&out, "   cannot be used: %s\n", d->missing);
     }
     if (!count) strbuf_add(&out, "no Vulkan device\n");
-    return text_finish(&out);
+    return roil_leave_text(text_finish(&out));
 }
 
 // ---- passes -----------------------------------------------------------------------------------
@@ -158,11 +159,12 @@ static bool print_pass(strbuf *out, shader_library *library, const pass_type *ty
 }
 
 char *roil_info_passes(roil *r, const char *name) {
+    mem_enter();
     const pass_type *one = name ? pass_type_find(name) : NULL;
-    if (name && !one) return NULL;
+    if (name && !one) return roil_leave_text(NULL);
     shader_library *library =
         shader_library_create(&(shader_library_desc){.shader_root = r->shaders});
-    if (!library) return NULL;
+    if (!library) return roil_leave_text(NULL);
     strbuf out = {0};
     bool done = true;
     if (one) {
@@ -178,9 +180,9 @@ char *roil_info_passes(roil *r, const char *name) {
                        "is a pass too:\n`roil info fields shader`.\n");
     }
     shader_library_destroy(library);
-    if (done) return text_finish(&out);
+    if (done) return roil_leave_text(text_finish(&out));
     strbuf_free(&out);
-    return NULL;
+    return roil_leave_text(NULL);
 }
 
 // ---- fields -----------------------------------------------------------------------------------
@@ -259,18 +261,19 @@ static void print_group(strbuf *out, const char *group) {
 }
 
 char *roil_info_fields(const char *name) {
+    mem_enter();
     static const char *const groups[] = {"value", "source",   "noise", "shape",
                                          "blast", "operator", "scene", "effect"};
     strbuf out = {0};
     if (name) {
         const field_kind *kind = find_kind(name);
         const script_object *object = script_object_find(name);
-        if (!kind && !object) return refuse_field(name);
+        if (!kind && !object) return roil_leave_text(refuse_field(name));
         if (kind)
             print_kind(&out, kind);
         else
             print_object(&out, object);
-        return text_finish(&out);
+        return roil_leave_text(text_finish(&out));
     }
     for (size_t i = 0; i < COUNT_OF(groups); i++) print_group(&out, groups[i]);
     strbuf_add(&out, "\n`roil info fields NAME` tells all about one. Arguments go by place or by "
@@ -278,7 +281,7 @@ char *roil_info_fields(const char *name) {
                      "f.x and f.rgb are components.\nAs in GLSL, the value is the last argument of "
                      "the functions smoothstep(low, high, value) and\nstep(edge, value); it is the "
                      "first of their methods, as of every other operator.\n");
-    return text_finish(&out);
+    return roil_leave_text(text_finish(&out));
 }
 
 // ---- one effect -------------------------------------------------------------------------------
@@ -326,6 +329,7 @@ static void add_memory(strbuf *out, const roil *r) {
 }
 
 char *roil_info_params(roil_effect *e) {
+    mem_enter();
     strbuf out = {0};
     effect *fx = e->effect;
     strbuf_add(&out, "%s: %u frames from %u at %g a second\n", effect_name(fx), effect_frames(fx),
@@ -341,13 +345,14 @@ char *roil_info_params(roil_effect *e) {
         section = own;
         print_control(e, i, &out);
     }
-    return text_finish(&out);
+    return roil_leave_text(text_finish(&out));
 }
 
 char *roil_info_graph(roil_effect *e) {
+    mem_enter();
     strbuf out = {0};
     graph_print_dot(effect_graph(e->effect), effect_name(e->effect), &out);
-    return text_finish(&out);
+    return roil_leave_text(text_finish(&out));
 }
 
 // ---- OpenVDB ----------------------------------------------------------------------------------
@@ -384,11 +389,12 @@ static void print_opacity(strbuf *out, const vdb_grid_info *g) {
 }
 
 char *roil_info_vdb(const char *file) {
+    mem_enter();
     arena memory = {0};
     vdb_info info;
     if (!vdb_read_info(file, &memory, &info)) {
         arena_free(&memory);
-        return NULL;
+        return roil_leave_text(NULL);
     }
     strbuf out = {0};
     for (size_t i = 0; i < info.count; i++) {
@@ -413,5 +419,5 @@ char *roil_info_vdb(const char *file) {
                          "script says y_up = false\n");
     if (info.metadata[0]) strbuf_add(&out, "%s", info.metadata);
     arena_free(&memory);
-    return text_finish(&out);
+    return roil_leave_text(text_finish(&out));
 }

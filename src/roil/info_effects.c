@@ -77,12 +77,13 @@ static json_t *effects_tree(const roil *r) {
 }
 
 char *roil_info_effects_json(roil *r) {
+    mem_enter();
     json_t *all = effects_tree(r);
-    if (!all) return NULL;
+    if (!all) return roil_leave_text(NULL);
     json_t *root = json_pack("{s:s, s:o}", "roil", roil_version(), "effects", all);
     char *text = json_dumps(root, JSON_INDENT(1));
     json_decref(root);
-    return text;
+    return roil_leave_text(text);
 }
 
 static const char *text_of(const json_t *item, const char *key) {
@@ -91,8 +92,9 @@ static const char *text_of(const json_t *item, const char *key) {
 }
 
 char *roil_info_effects(roil *r) {
+    mem_enter();
     json_t *all = effects_tree(r);
-    if (!all) return NULL;
+    if (!all) return roil_leave_text(NULL);
     strbuf out = {0};
     for (size_t i = 0; i < json_array_size(all); i++) {
         const json_t *one = json_array_get(all, i);
@@ -103,7 +105,7 @@ char *roil_info_effects(roil *r) {
                "\nThey lie in %s/effects. `roil new NAME --from EFFECT` makes a folder of your own "
                "from one,\n`roil info effects -o FILE.html` a page with pictures.\n",
                r->home);
-    return out.text;
+    return roil_leave_text(out.text);
 }
 
 // ---- page -------------------------------------------------------------------------------------
@@ -136,8 +138,9 @@ static void add_card(strbuf *out, const json_t *one) {
 }
 
 char *roil_info_effects_page(roil *r) {
+    mem_enter();
     json_t *all = effects_tree(r);
-    if (!all) return NULL;
+    if (!all) return roil_leave_text(NULL);
     strbuf out = {0};
     strbuf_add(
         &out,
@@ -157,5 +160,5 @@ char *roil_info_effects_page(roil *r) {
     for (size_t i = 0; i < json_array_size(all); i++) add_card(&out, json_array_get(all, i));
     strbuf_add(&out, "</main></html>\n");
     json_decref(all);
-    return out.text;
+    return roil_leave_text(out.text);
 }

@@ -183,8 +183,9 @@ static bool keep_one(json_t *list, const char *name) {
 }
 
 char *roil_info_json(roil *r, const char *list, const char *name) {
+    mem_enter();
     json_t *root = info_tree(r);
-    if (!root) return NULL;
+    if (!root) return roil_leave_text(NULL);
     if (list) json_object_del(root, strcmp(list, "words") == 0 ? "passes" : "words");
     if (list && name && !keep_one(json_object_get(root, list), name)) {
         json_decref(root);
@@ -192,17 +193,18 @@ char *roil_info_json(roil *r, const char *list, const char *name) {
             strcmp(list, "words") == 0 ? roil_info_fields(name) : roil_info_passes(r, name);
         assert(!text); // it says what is near
         roil_free(text);
-        return NULL;
+        return roil_leave_text(NULL);
     }
-    return tree_finish(root);
+    return roil_leave_text(tree_finish(root));
 }
 
 // ---- devices, one effect ----------------------------------------------------------------------
 
 char *roil_info_devices_json(void) {
+    mem_enter();
     gpu_info infos[16];
     int count = gpu_list(infos, COUNT_OF(infos));
-    if (count < 0) return NULL;
+    if (count < 0) return roil_leave_text(NULL);
     json_t *all = json_array();
     for (int i = 0; i < count && i < (int)COUNT_OF(infos); i++) {
         const gpu_info *d = &infos[i];
@@ -212,7 +214,8 @@ char *roil_info_devices_json(void) {
         if (!d->usable) set_text(one, "missing", d->missing);
         json_array_append_new(all, one);
     }
-    return tree_finish(json_pack("{s:s, s:o}", "roil", roil_version(), "devices", all));
+    return roil_leave_text(
+        tree_finish(json_pack("{s:s, s:o}", "roil", roil_version(), "devices", all)));
 }
 
 static json_t *control_json(roil_effect *e, size_t index) {
@@ -244,12 +247,13 @@ static json_t *control_json(roil_effect *e, size_t index) {
 }
 
 char *roil_info_params_json(roil_effect *e) {
+    mem_enter();
     roil_effect_info info = roil_get_info(e);
     json_t *controls = json_array();
     for (size_t i = 0; i < roil_control_count(e); i++)
         json_array_append_new(controls, control_json(e, i));
-    return tree_finish(json_pack("{s:s, s:{s:s, s:f, s:i, s:i}, s:o}", "roil", roil_version(),
-                                 "effect", "name", info.name, "fps", info.fps, "first_frame",
-                                 (int)info.first_frame, "frames", (int)info.frames, "controls",
-                                 controls));
+    return roil_leave_text(tree_finish(
+        json_pack("{s:s, s:{s:s, s:f, s:i, s:i}, s:o}", "roil", roil_version(), "effect", "name",
+                  info.name, "fps", info.fps, "first_frame", (int)info.first_frame, "frames",
+                  (int)info.frames, "controls", controls)));
 }

@@ -254,8 +254,9 @@ static void add_field_class(strbuf *out, const json_t *words) {
 }
 
 char *roil_info_lua_meta(roil *r) {
+    mem_enter();
     json_t *root = info_tree(r);
-    if (!root) return NULL;
+    if (!root) return roil_leave_text(NULL);
     const json_t *words = json_object_get(root, "words"), *passes = json_object_get(root, "passes");
     strbuf out = {0};
     strbuf_add(
@@ -274,5 +275,5 @@ char *roil_info_lua_meta(roil *r) {
     for (size_t i = 0; i < json_array_size(passes); i++)
         add_pass(&out, root, json_array_get(passes, i));
     json_decref(root);
-    return out.text;
+    return roil_leave_text(out.text);
 }

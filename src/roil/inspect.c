@@ -17,12 +17,13 @@ enum { PROBE_SIZE = 8 * sizeof(float) };
 // ---- keeping ----------------------------------------------------------------------------------
 
 bool roil_keep(roil_effect *e, const char *image) {
-    if (!roil_find_image(e, image).id) return false;
+    mem_enter();
+    if (!roil_find_image(e, image).id) return mem_leave(false);
     for (size_t i = 0; i < e->kept_count; i++)
-        if (strcmp(e->kept[i], image) == 0) return true;
+        if (strcmp(e->kept[i], image) == 0) return mem_leave(true);
     MEM_RESERVE(e->kept, e->kept_count + 1, e->kept_capacity);
     e->kept[e->kept_count++] = mem_copy(image, strlen(image) + 1);
-    return true;
+    return mem_leave(true);
 }
 
 void roil_keep_only(roil_effect *e, const char *image) {
@@ -228,21 +229,22 @@ static bool make_kernel(roil *r, job *j) {
 
 bool roil_inspect(roil_effect *e, const roil_inspection *how, roil_texture *target,
                   roil_texel *texel) {
+    mem_enter();
     roil *r = e->owner;
     view *v = view_get(r);
     graph_image image;
     job j = {.target = view_drawn(r, target)};
     *texel = (roil_texel){0};
-    if (!v || !j.target) return false;
+    if (!v || !j.target) return mem_leave(false);
     j.image = find_image(e, how, &image);
     if (!j.image || !inspection_check(how, gpu_image_get_desc(j.image)) || !make_kernel(r, &j) ||
         !make_probe(r, &v->probe, e, image))
-        return false;
+        return mem_leave(false);
     fill_block(&j, how);
     uint64_t frame = gpu_frame_begin(r->device);
-    if (!frame) return false;
+    if (!frame) return mem_leave(false);
     if (j.cursor) read_probe(&v->probe, frame, texel);
     bool done = inspection_draw(r, &j, how->mip) && (!j.cursor || send_probe(r, &v->probe, frame));
     bool ended = gpu_frame_end(r->device);
-    return done && ended && view_bring(r, target);
+    return mem_leave(done && ended && view_bring(r, target));
 }

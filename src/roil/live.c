@@ -78,20 +78,21 @@ static bool is_structural(const effect *e, const effect_control *c) {
 }
 
 bool roil_live_set(roil_live *l, const char *name, const char *value) {
-    if (!l->effect) return err_set("'%s' cannot be set: no effect is loaded", name);
+    mem_enter();
+    if (!l->effect) return mem_leave(err_set("'%s' cannot be set: no effect is loaded", name));
     effect *e = l->effect->effect;
     const effect_control *c = effect_find_control(e, name);
-    if (!c) return false;
+    if (!c) return mem_leave(false);
     float parsed[4]; // what no load can take is refused at once
     bool done =
         is_fixed(c) ? value_parse(c->desc, c->name, value, parsed) : effect_set(e, name, value);
-    if (!done) return false;
+    if (!done) return mem_leave(false);
     if (strcmp(value, c->initial) == 0)
         drop_setting(l, name, c->initial);
     else
         put_setting(l, name, value, c->initial);
     if (is_structural(e, c)) live_want(l);
-    return true;
+    return mem_leave(true);
 }
 
 bool roil_live_reset(roil_live *l, const char *name) {
@@ -115,11 +116,12 @@ bool roil_live_reset(roil_live *l, const char *name) {
 }
 
 char *roil_live_setting(roil_live *l, const char *name) {
+    mem_enter();
     pthread_mutex_lock(&l->lock);
     const live_setting *s = find_setting(l, name);
     char *text = s ? copy_text(s->text) : NULL;
     pthread_mutex_unlock(&l->lock);
-    return text;
+    return roil_leave_text(text);
 }
 
 static bool holds(const live_setting *s, const effect_control *c) {
@@ -132,7 +134,7 @@ static void apply_settings(roil_live *l, effect *e) {
         const effect_control *c = effect_get_control(e, i);
         const live_setting *s = find_setting(l, c->name);
         if (is_fixed(c)) continue; // another load is on its way then
-        if (s && holds(s, c) && (!c->moved || strcmp(c->moved, s->text) != 0))
+        if (s && holds(s, c) && (!c->moved || strcmp(effect_control_setting(c), s->text) != 0))
             effect_set(e, c->name, s->text);
         else if ((!s || !holds(s, c)) && c->moved)
             effect_reset(e, c->name);
@@ -264,7 +266,7 @@ static void free_live(roil_live *l) { // its threads have ended
     mem_free(l);
 }
 
-roil_live *roil_live_create(roil *r, const roil_live_desc *desc) {
+static roil_live *create_live(roil *r, const roil_live_desc *desc) {
     if (!r->device) {
         err_set("no device: an effect can only be checked");
         return NULL;
@@ -290,6 +292,13 @@ roil_live *roil_live_create(roil *r, const roil_live_desc *desc) {
     if (live_start(l)) return l;
     free_live(l);
     return NULL;
+}
+
+roil_live *roil_live_create(roil *r, const roil_live_desc *desc) {
+    mem_enter();
+    roil_live *made = create_live(r, desc);
+    LEAVE_WITH(made, roil_live_destroy(made));
+    return made;
 }
 
 // Returns whether all builders ended before `until`. Call it with the lock held.

@@ -159,11 +159,17 @@ static effect *builder_load(roil_live *l, const order *o, file_set *files) {
 
 static live_result builder_build(roil_live *l, double since, file_set *files) {
     live_result result = {.since = since};
+    mem_enter();
     if (apply_presets(l, files)) {
         order o = take_order(l);
         result.effect = builder_load(l, &o, files);
         arena_free(&o.memory);
     }
+    if (result.effect && mem_is_short()) {
+        effect_destroy(result.effect);
+        result.effect = NULL;
+    }
+    mem_leave(true);
     if (!result.effect) result.message = live_explain(err_get(), l->owner->scripts);
     return result;
 }

@@ -188,14 +188,15 @@ void roil_add_param_lua(const roil_effect *e, const effect_control *c, const cha
 }
 
 char *roil_control_lua(roil_effect *e, const char *name) {
+    mem_enter();
     const effect_control *c = effect_find_control(e->effect, name);
-    if (!c) return NULL;
+    if (!c) return roil_leave_text(NULL);
     roil_control control;
     find_and_get(e, name, &control);
     strbuf out = {0};
     if (c->kind == EFFECT_CONTROL_PARAM) {
         add_param(&out, &control, control.name);
-        return out.text;
+        return roil_leave_text(out.text);
     }
     if (c->kind == EFFECT_CONTROL_PALETTE)
         strbuf_add(&out, "palette ");
@@ -204,5 +205,5 @@ char *roil_control_lua(roil_effect *e, const char *name) {
     else
         roil_add_lua_key(control.label, &out);
     roil_add_lua(e, c, true, &out);
-    return out.text;
+    return roil_leave_text(out.text);
 }

@@ -77,7 +77,8 @@ char *roil_describe(roil_effect *e, const roil_making *how) {
     json_t *settings = json_object(), *options = json_array();
     for (size_t i = 0; i < effect_control_count(e->effect); i++) {
         const effect_control *c = effect_get_control(e->effect, i);
-        if (c->moved) json_object_set_new(settings, c->name, json_string(c->moved));
+        if (c->moved)
+            json_object_set_new(settings, c->name, json_string(effect_control_setting(c)));
     }
     for (size_t i = 0; how->options[i]; i++)
         json_array_append_new(options, json_string(how->options[i]));
@@ -225,11 +226,18 @@ roil_made *roil_parse_made(const char *line, const char *name) {
     return NULL;
 }
 
-roil_made *roil_read_made(const char *file) {
+static roil_made *read_made(const char *file) {
     char *line = mem_alloc(LINE_MAX + 1);
     roil_made *m = find_line(file, line) ? roil_parse_made(line, file) : NULL;
     mem_free(line);
     return m;
+}
+
+roil_made *roil_read_made(const char *file) {
+    mem_enter();
+    roil_made *made = read_made(file);
+    LEAVE_WITH(made, roil_free_made(made));
+    return made;
 }
 
 void roil_free_made(roil_made *m) {

@@ -204,13 +204,14 @@ static bool read_output(roil_effect *e, raw_image *out) {
 }
 
 bool roil_read(roil_effect *e, bool alpha, uint8_t *out) {
+    mem_enter();
     raw_image raw = {0};
-    if (!read_output(e, &raw)) return false;
+    if (!read_output(e, &raw)) return mem_leave(false);
     linear_image image = expand_all(&raw);
     encode8_nearest(&image, alpha ? STRAIGHT : OPAQUE, out);
     mem_free(image.pixels);
     free_raw(&raw);
-    return true;
+    return mem_leave(true);
 }
 
 // ---- files ------------------------------------------------------------------------------------
@@ -373,21 +374,23 @@ static picture *take_picture(roil_effect *e, const char *file, const roil_save_o
 }
 
 bool roil_save(roil_effect *e, const char *file, const roil_save_options *options) {
+    mem_enter();
     picture *p = take_picture(e, file, options);
-    if (!p) return false;
+    if (!p) return mem_leave(false);
     bool done = write_picture(p);
     free_picture(p);
-    return done;
+    return mem_leave(done);
 }
 
 bool roil_is_whole(const char *file) {
+    mem_enter();
     arena memory = {0};
     png_image png;
     exr_image exr;
     bool done = strcmp(path_extension(file), "exr") == 0 ? exr_read(file, NULL, &memory, &exr)
                                                          : png_read(file, NULL, &memory, &png);
     arena_free(&memory);
-    return done;
+    return mem_leave(done);
 }
 
 // ---- files beside the frames ------------------------------------------------------------------
@@ -410,17 +413,19 @@ roil_writer *roil_writer_create(void) {
 
 bool roil_writer_save(roil_writer *w, roil_effect *e, const char *file,
                       const roil_save_options *options) {
+    mem_enter();
     picture *p = take_picture(e, file, options);
     // Memory that earlier pictures hold comes back once they are written.
     if (!p && jobs_wait(w->files)) p = take_picture(e, file, options);
-    return p && jobs_add(w->files, write_picture, free_picture, p);
+    return mem_leave(p && jobs_add(w->files, write_picture, free_picture, p));
 }
 
 bool roil_writer_finish(roil_writer *w) {
-    if (!w) return true;
+    mem_enter();
+    if (!w) return mem_leave(true);
     bool done = jobs_finish(w->files);
     mem_free(w);
-    return done;
+    return mem_leave(done);
 }
 
 // ---- video ------------------------------------------------------------------------------------
@@ -450,7 +455,7 @@ bool roil_is_film(const char *file) {
     return video_is_film(file);
 }
 
-roil_video *roil_video_create(roil_effect *e, const char *file, double fps, bool alpha) {
+static roil_video *create_video(roil_effect *e, const char *file, double fps, bool alpha) {
     if (!file_make_parent_folders(file)) return NULL;
     video *out = video_create(file, e->width, e->height, fps, alpha);
     if (!out) return NULL;
@@ -468,6 +473,13 @@ roil_video *roil_video_create(roil_effect *e, const char *file, double fps, bool
     return NULL;
 }
 
+roil_video *roil_video_create(roil_effect *e, const char *file, double fps, bool alpha) {
+    mem_enter();
+    roil_video *made = create_video(e, file, fps, alpha);
+    LEAVE_WITH(made, roil_video_abandon(made));
+    return made;
+}
+
 static bool encode_frame(void *user) {
     const video_frame *frame = user;
     linear_image image = expand_all(&frame->raw);
@@ -483,6 +495,7 @@ static void free_frame(void *user) {
 }
 
 bool roil_video_add(roil_video *v) {
+    mem_enter();
     video_frame frame = {.of = v};
     bool read = read_output(v->effect, &frame.raw) ||
                 (jobs_wait(v->frames) && read_output(v->effect, &frame.raw)); // as roil_writer_save
@@ -491,7 +504,8 @@ bool roil_video_add(roil_video *v) {
     if (v->count == 0) v->before = effect_frames_before(v->effect->effect);
     if (v->count == 1) v->second = v->last;
     v->count++;
-    return read && jobs_add(v->frames, encode_frame, free_frame, mem_copy(&frame, sizeof frame));
+    return mem_leave(read &&
+                     jobs_add(v->frames, encode_frame, free_frame, mem_copy(&frame, sizeof frame)));
 }
 
 // Returns the recipe of a film whose frames are evenly spaced; else NULL.
@@ -510,6 +524,7 @@ static char *describe_film(const roil_video *v) {
 }
 
 bool roil_video_finish(roil_video *v) {
+    mem_enter();
     bool done = jobs_finish(v->frames);
     char *line = describe_film(v);
     if (line) video_set_comment(v->video, line);
@@ -519,7 +534,7 @@ bool roil_video_finish(roil_video *v) {
         video_abandon(v->video);
     mem_free(line);
     video_free(v);
-    return done;
+    return mem_leave(done);
 }
 
 void roil_video_abandon(roil_video *v) {

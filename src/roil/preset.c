@@ -86,7 +86,7 @@ bool roil_preset_path(char out[PATH_CAP], const char *effect_file, const char *p
     return preset_path(out, effect_file, preset);
 }
 
-roil_preset *roil_read_preset(roil *r, const char *effect_file, const char *preset) {
+static roil_preset *read_preset(roil *r, const char *effect_file, const char *preset) {
     (void)r;
     char path[PATH_CAP];
     if (!roil_preset_path(path, effect_file, preset)) return NULL;
@@ -108,6 +108,13 @@ roil_preset *roil_read_preset(roil *r, const char *effect_file, const char *pres
     for (size_t i = 0; i < count; i++) list[i] = (roil_setting){settings[i].name, settings[i].text};
     own->preset = (roil_preset){list, count};
     return &own->preset;
+}
+
+roil_preset *roil_read_preset(roil *r, const char *effect_file, const char *preset) {
+    mem_enter();
+    roil_preset *made = read_preset(r, effect_file, preset);
+    LEAVE_WITH(made, roil_free_preset(made));
+    return made;
 }
 
 void roil_free_preset(roil_preset *preset) {
@@ -136,14 +143,15 @@ static void print_preset(const roil_effect *e, const char *name, strbuf *out) {
 }
 
 bool roil_write_preset(roil_effect *e, const char *name) {
+    mem_enter();
     char path[PATH_CAP], root[PATH_CAP];
     if (!is_name(name, strlen(name)))
-        return err_set("preset '%.64s' is not a name (letters, digits, _ and -)", name);
-    if (!preset_path(path, effect_file(e->effect), name)) return false;
+        return mem_leave(err_set("preset '%.64s' is not a name (letters, digits, _ and -)", name));
+    if (!preset_path(path, effect_file(e->effect), name)) return mem_leave(false);
     path_folder(root, effect_file(e->effect));
     strbuf text = {0};
     print_preset(e, name, &text);
     bool done = file_write_inside(root, path, text.text, text.length);
     strbuf_free(&text);
-    return done;
+    return mem_leave(done);
 }

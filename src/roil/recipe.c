@@ -16,7 +16,7 @@ static bool read_recipe(const char *png, arena *memory, recipe *out) {
     return recipe_read(texts, count, memory, out) || err_prefix("%s: ", png);
 }
 
-roil_recipe *roil_read_recipe(const char *png) {
+static roil_recipe *recipe_of(const char *png) {
     owned_recipe *own = mem_alloc(sizeof *own);
     recipe found;
     if (!read_recipe(png, &own->memory, &found)) {
@@ -33,6 +33,13 @@ roil_recipe *roil_read_recipe(const char *png) {
                                 .settings = settings,
                                 .setting_count = found.setting_count};
     return &own->recipe;
+}
+
+roil_recipe *roil_read_recipe(const char *png) {
+    mem_enter();
+    roil_recipe *made = recipe_of(png);
+    LEAVE_WITH(made, roil_free_recipe(made));
+    return made;
 }
 
 void roil_free_recipe(roil_recipe *r) {

@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/isolate.h"
+#include "base/log.h"
 #include "base/memory.h"
 #include "base/str.h"
 #include "effect/events.h"
@@ -23,6 +24,23 @@ const char *roil_error(void) {
 }
 void roil_free(void *text) {
     mem_free(text);
+}
+
+char *roil_leave_text(char *text) {
+    LEAVE_WITH(text, mem_free(text));
+    return text;
+}
+
+void roil_set_log(void (*write)(void *user, int level, const char *text), void *user,
+                  roil_level least) {
+    _Static_assert((int)ROIL_DEBUG == (int)LOG_DEBUG && (int)ROIL_ERROR == (int)LOG_ERROR,
+                   "levels");
+    log_set_target(write, user);
+    if (write) log_set_level((log_level)least);
+}
+
+bool roil_set_allocator(const roil_allocator *a) {
+    return mem_set_heap(a ? (mem_heap){a->allocate, a->user} : (mem_heap){0});
 }
 
 // ---- device -----------------------------------------------------------------------------------
@@ -103,7 +121,7 @@ static bool will_compile(const roil *r, const roil_desc *desc) {
     return desc->window || !cached || !shader_cache_holds_any(cache);
 }
 
-roil *roil_create(const roil_desc *desc) {
+static roil *create(const roil_desc *desc) {
     char home[PATH_CAP], cache[PATH_CAP];
     if ((desc->memory && !budget_set_share(desc->memory)) || !find_home(home, desc->home))
         return NULL;
@@ -125,6 +143,13 @@ roil *roil_create(const roil_desc *desc) {
     if (roil_take_assets(r, desc) && (desc->no_device || open_device(r, desc))) return r;
     roil_destroy(r);
     return NULL;
+}
+
+roil *roil_create(const roil_desc *desc) {
+    mem_enter();
+    roil *made = create(desc);
+    LEAVE_WITH(made, roil_destroy(made));
+    return made;
 }
 
 void roil_destroy(roil *r) {
@@ -241,8 +266,8 @@ effect_desc roil_effect_desc(const roil *r, const char *file, const roil_assets 
     };
 }
 
-roil_effect *roil_load_inside(roil *r, const char *folder, const char *file,
-                              const roil_setting *settings, size_t count) {
+static roil_effect *load(roil *r, const char *folder, const char *file,
+                         const roil_setting *settings, size_t count) {
     effect_setting *own = mem_alloc(count * sizeof *own);
     for (size_t i = 0; i < count; i++)
         own[i] = (effect_setting){.name = settings[i].name, .text = settings[i].value};
@@ -264,6 +289,14 @@ roil_effect *roil_load_inside(roil *r, const char *folder, const char *file,
     return NULL;
 }
 
+roil_effect *roil_load_inside(roil *r, const char *folder, const char *file,
+                              const roil_setting *settings, size_t count) {
+    mem_enter();
+    roil_effect *made = load(r, folder, file, settings, count);
+    LEAVE_WITH(made, roil_unload(made));
+    return made;
+}
+
 size_t roil_files(const roil_effect *e, const char **out, size_t capacity) {
     const char *const *files;
     size_t count = effect_files(e->effect, &files);
@@ -281,10 +314,11 @@ void roil_unload(roil_effect *e) {
 }
 
 bool roil_check(roil_effect *e) {
+    mem_enter();
     time_limit time = roil_time_limit(e->owner), *before = time_limit_enter(&time);
     bool done = effect_check(e->effect);
     time_limit_leave(before);
-    return done;
+    return mem_leave(done);
 }
 
 roil_effect_info roil_get_info(const roil_effect *e) {
@@ -339,9 +373,10 @@ bool roil_set_samples(roil_effect *e, uint32_t samples, double shutter) {
 }
 
 bool roil_prepare(roil_effect *e, uint32_t width, uint32_t height) {
+    mem_enter();
     if (width < 1 || height < 1 || width > 16384 || height > 16384)
-        return err_set("picture size %u x %u; accepted: 1 to 16384 each", width, height);
-    if (!e->owner->device) return err_set("no device: this effect can only be checked");
+        return mem_leave(err_set("picture size %u x %u; accepted: 1 to 16384 each", width, height));
+    if (!e->owner->device) return mem_leave(err_set("no device: this effect can only be checked"));
     e->width = width;
     e->height = height;
     e->frame = 0; // images may be new
@@ -349,19 +384,21 @@ bool roil_prepare(roil_effect *e, uint32_t width, uint32_t height) {
     time_limit time = roil_time_limit(e->owner), *before = time_limit_enter(&time);
     bool done = effect_build(e->effect, width, height);
     time_limit_leave(before);
-    return done;
+    return mem_leave(done);
 }
 
 bool roil_render(roil_effect *e, double frame) {
+    mem_enter();
     e->shown = frame;
     e->frame = effect_render(e->effect, frame, false);
-    return e->frame != 0;
+    return mem_leave(e->frame != 0);
 }
 
 bool roil_advance(roil_effect *e, double frame) {
+    mem_enter();
     e->shown = frame;
     e->frame = effect_render(e->effect, frame, true);
-    return e->frame != 0;
+    return mem_leave(e->frame != 0);
 }
 
 uint32_t roil_samples(const roil_effect *e) {
@@ -380,7 +417,8 @@ bool roil_get_simulation(const roil_effect *e, roil_simulation *out) {
 }
 
 bool roil_catch_up(roil_effect *e, double frame, bool *more) {
-    return effect_catch_up(e->effect, frame, more);
+    mem_enter();
+    return mem_leave(effect_catch_up(e->effect, frame, more));
 }
 
 size_t roil_snapshots(const roil_effect *e, double *frames, size_t capacity) {
@@ -398,12 +436,26 @@ static roil_branch *branch_of(effect_branch *snapshots) {
     return b;
 }
 
-roil_branch *roil_branch_begin(roil_effect *e) {
+static roil_branch *begin_branch(roil_effect *e) {
     return branch_of(effect_branch_begin(e->effect));
 }
 
-roil_branch *roil_branch_leave(roil_effect *e) {
+roil_branch *roil_branch_begin(roil_effect *e) {
+    mem_enter();
+    roil_branch *made = begin_branch(e);
+    LEAVE_WITH(made, roil_branch_destroy(made));
+    return made;
+}
+
+static roil_branch *leave_with_branch(roil_effect *e) {
     return branch_of(effect_branch_leave(e->effect));
+}
+
+roil_branch *roil_branch_leave(roil_effect *e) {
+    mem_enter();
+    roil_branch *made = leave_with_branch(e);
+    LEAVE_WITH(made, roil_branch_destroy(made));
+    return made;
 }
 
 void roil_branch_enter(roil_effect *e, roil_branch *b) {
@@ -422,14 +474,16 @@ void roil_restart(roil_effect *e) {
 }
 
 bool roil_checkpoint(roil_effect *e, const char *file) {
-    return effect_save_state(e->effect, file);
+    mem_enter();
+    return mem_leave(effect_save_state(e->effect, file));
 }
 
 bool roil_restore(roil_effect *e, const char *file, double *frame) {
+    mem_enter();
     double last;
-    if (!effect_load_state(e->effect, file, &last)) return false;
+    if (!effect_load_state(e->effect, file, &last)) return mem_leave(false);
     if (frame) *frame = last;
-    return true;
+    return mem_leave(true);
 }
 
 void roil_on_progress(roil_effect *e, bool (*call)(void *user, double done, double whole),

@@ -1,6 +1,7 @@
 // The inside of libroil's objects, for src/roil*.c only.
 #pragma once
 #include "base/file.h"
+#include "base/memory.h"
 #include "base/time_limit.h"
 #include "effect/effect.h"
 #include "roil.h"
@@ -88,6 +89,18 @@ roil_made *roil_parse_made(const char *line, const char *name); // `name` is for
 
 // Opens the host's device. NULL with a message. (roil/vulkan.c)
 gpu *roil_open_host(const gpu_desc *how, const roil_vulkan *vulkan);
+
+// Ends a call that makes an object: it is destroyed, and NULL, when memory was short.
+#define LEAVE_WITH(object, destroy)                                                                \
+    do {                                                                                           \
+        if ((object) && mem_is_short()) {                                                          \
+            destroy;                                                                               \
+            (object) = NULL;                                                                       \
+        }                                                                                          \
+        mem_leave((object) != NULL);                                                               \
+    } while (0)
+char *roil_leave_text(char *text); // the same of a text, which is returned
+
 time_limit roil_time_limit(const roil *r); // a new limit for a load
 // What an effect is created with, by the options of `r`; the other members are zero.
 effect_desc roil_effect_desc(const roil *r, const char *file, const roil_assets *assets,

@@ -220,7 +220,7 @@ static bool make_maps(roil_sheet *s, const wish *w) {
     return s->memory;
 }
 
-roil_sheet *roil_sheet_create(roil_effect *e, const roil_sheet_desc *desc) {
+static roil_sheet *create_sheet(roil_effect *e, const roil_sheet_desc *desc) {
     roil_sheet *s = mem_alloc(sizeof *s);
     wish w = {0};
     s->owner = e;
@@ -236,6 +236,13 @@ roil_sheet *roil_sheet_create(roil_effect *e, const roil_sheet_desc *desc) {
     }
     roil_sheet_free(s);
     return NULL;
+}
+
+roil_sheet *roil_sheet_create(roil_effect *e, const roil_sheet_desc *desc) {
+    mem_enter();
+    roil_sheet *made = create_sheet(e, desc);
+    LEAVE_WITH(made, roil_sheet_free(made));
+    return made;
 }
 
 bool roil_repeats(roil_effect *e, const char *source, double seconds, char *why, size_t capacity) {
@@ -259,26 +266,28 @@ static bool add_map(roil_sheet *s, sheet_map map, uint32_t cell, float weight) {
 }
 
 bool roil_sheet_add(roil_sheet *s, uint32_t cell, double weight) {
+    mem_enter();
     if (cell >= s->columns * s->rows)
-        return err_set("cell %u; the sheet has %u", cell, s->columns * s->rows);
+        return mem_leave(err_set("cell %u; the sheet has %u", cell, s->columns * s->rows));
     for (int i = 0; i < SHEET_MAPS; i++)
         if (s->maps[i].pixels && s->passes.images[sources[i]].id &&
             !add_map(s, (sheet_map)i, cell, (float)weight))
-            return false;
-    return true;
+            return mem_leave(false);
+    return mem_leave(true);
 }
 
 bool roil_sheet_save(roil_sheet *s, const char *file, const roil_sheet_options *options) {
+    mem_enter();
     const sheet_engine *engine = sheet_find_engine(options->engine);
-    if (!engine) return false;
-    if (s->saved) return err_set("%s: the sheet was written already", file);
+    if (!engine) return mem_leave(false);
+    if (s->saved) return mem_leave(err_set("%s: the sheet was written already", file));
     s->saved = true;
     s->files = json_array();
     s->used = options->count ? options->count : s->columns * s->rows;
     if (s->maps[SHEET_MOTION].pixels && !s->passes.moves &&
         !sheet_find_flow(s, s->used, options->loop > 0, options->fps))
-        return false;
-    if (!sheet_write_all(s, file, options, engine)) return false;
+        return mem_leave(false);
+    if (!sheet_write_all(s, file, options, engine)) return mem_leave(false);
     json_t *description = sheet_describe(s, file, options, engine);
     strbuf path = {0};
     sheet_stem(file, &path);
@@ -289,7 +298,7 @@ bool roil_sheet_save(roil_sheet *s, const char *file, const roil_sheet_options *
     free(text);
     strbuf_free(&path);
     json_decref(description);
-    return done;
+    return mem_leave(done);
 }
 
 const char *roil_sheet_summary(const roil_sheet *s) {

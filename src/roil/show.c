@@ -207,22 +207,25 @@ static bool find_shown(roil *r, view *v, const roil_picture *p, shown *out) {
 }
 
 bool roil_show(roil *r, const roil_picture *p) {
-    if (p->width == 0 || p->height == 0) return true; // minimised
+    mem_enter();
+    if (p->width == 0 || p->height == 0) return mem_leave(true); // minimised
     view *v = view_get(r);
     shown what;
     if (!v || !check_triangles(p) ||
         !view_make_compute(r, r->shown, &v->compose, "view/compose.comp", NULL, 0) ||
         !view_make_overlay(r, &v->overlay) || !make_canvas(r, v, p->width, p->height) ||
         !find_shown(r, v, p, &what) || !gpu_frame_begin(r->shown))
-        return false;
+        return mem_leave(false);
     bool done = compose_picture(r, v, p, &what) && draw_overlay(r, v, p) &&
                 (!r->window || gpu_present(r->shown, v->canvas));
     bool ended = gpu_frame_end(r->shown);
-    return done && ended;
+    return mem_leave(done && ended);
 }
 
 bool roil_read_shown(roil *r, uint8_t *out) {
-    if (!r->view || !r->view->canvas) return err_set("nothing has been shown yet");
+    mem_enter();
+    if (!r->view || !r->view->canvas) return mem_leave(err_set("nothing has been shown yet"));
     const gpu_image_desc *size = gpu_image_get_desc(r->view->canvas);
-    return gpu_image_read(r->shown, r->view->canvas, out, (size_t)size->width * size->height * 4);
+    return mem_leave(
+        gpu_image_read(r->shown, r->view->canvas, out, (size_t)size->width * size->height * 4));
 }

@@ -90,6 +90,7 @@ static bool slices_view_check(const roil_slices_view *v) {
 }
 
 bool roil_slices_draw(roil_effect *e, const roil_slices_view *how, roil_texture *target) {
+    mem_enter();
     roil *r = e->owner;
     int channel;
     const pass *p = roil_slices_find(e, how->flow, how->slice);
@@ -97,14 +98,14 @@ bool roil_slices_draw(roil_effect *e, const roil_slices_view *how, roil_texture 
         p && slices_view_check(how) ? pass_slices_look(p, (int)how->field, &channel) : NULL;
     if (!image || !view_get(r) ||
         !view_make_compute(r, r->device, &r->view->slices, "view/slices.comp", NULL, 0))
-        return false;
+        return mem_leave(false);
     float count = (float)pass_slices_get_desc(p)->count;
     const slices_block block = {
         .scale = {1 / how->range, ((float)how->slice + 0.5f) / count, how->arrows},
         .field = {(int32_t)how->field, channel},
     };
     gpu_image *drawn = view_drawn(r, target);
-    return drawn && slices_view_draw(r, image, &block, drawn) && view_bring(r, target);
+    return mem_leave(drawn && slices_view_draw(r, image, &block, drawn) && view_bring(r, target));
 }
 
 bool roil_slices_greatest(roil_effect *e, const roil_slices_view *how, float *out) {
@@ -115,6 +116,7 @@ bool roil_slices_greatest(roil_effect *e, const roil_slices_view *how, float *ou
 // ---- touching ---------------------------------------------------------------------------------
 
 bool roil_slices_push(roil_effect *e, const roil_slices_square *where, const float force[2]) {
+    mem_enter();
     pass *p = roil_slices_find_square(e, where);
     const slices_hand push = {
         .pushes = true,
@@ -124,19 +126,20 @@ bool roil_slices_push(roil_effect *e, const roil_slices_square *where, const flo
         .angle = atan2f(-force[0], force[1]) * 57.2957795f, // from its upper edge
         .strength = hypotf(force[0], force[1]),
     };
-    return p && slices_put(p, &push);
+    return mem_leave(p && slices_put(p, &push));
 }
 
 bool roil_slices_capture(roil_effect *e, const roil_slices_square *where, const char *name,
                          float scale[2]) {
+    mem_enter();
     char path[PATH_CAP];
     arena memory = {0};
     picture image;
     const pass *p = roil_slices_find_square(e, where);
-    if (!p || !template_new_path(e, name, path)) return false;
+    if (!p || !template_new_path(e, name, path)) return mem_leave(false);
     bool done =
         slices_capture(p, where->slice, where->middle, where->side, &memory, &image, scale) &&
         file_make_parent_folders(path) && picture_write(path, &image);
     arena_free(&memory);
-    return done;
+    return mem_leave(done);
 }

@@ -375,16 +375,17 @@ static char *curve_with(roil_effect *e, const point *p, const float change[3]) {
 }
 
 char *roil_handle_text(roil_effect *e, size_t handle, bool second, const float at[3]) {
+    mem_enter();
     point p;
     roil_control c;
     size_t index;
-    if (!find(e, handle, &p)) return NULL;
+    if (!find(e, handle, &p)) return roil_leave_text(NULL);
     const char *name = second ? p.face.second : p.face.control;
     if (!name) {
         err_set("%s.%s: no control moves it", p.face.name, p.face.part);
-        return NULL;
+        return roil_leave_text(NULL);
     }
-    if (!roil_find_control(e, name, &index)) return NULL;
+    if (!roil_find_control(e, name, &index)) return roil_leave_text(NULL);
     roil_get_control(e, index, &c);
     float change[3], distance, yaw, pitch;
     if (p.face.thing == ROIL_SUN) {
@@ -395,34 +396,38 @@ char *roil_handle_text(roil_effect *e, size_t handle, bool second, const float a
     } else {
         find_change(&p, at, change);
     }
-    if (p.face.key != SIZE_MAX) return curve_with(e, &p, change);
+    if (p.face.key != SIZE_MAX) return roil_leave_text(curve_with(e, &p, change));
     strbuf text = {0};
     for (int i = 0; i < c.components; i++) {
         float value = round_fine(clampf(c.value[i] + change[i], c.min, c.max));
         strbuf_add(&text, "%s", i ? "," : "");
         strbuf_add_float(&text, value);
     }
-    return text.text;
+    return roil_leave_text(text.text);
 }
 
 bool roil_handle_path(roil_effect *e, size_t handle, const double *times, float (*out)[3],
                       size_t count) {
+    mem_enter();
     point p;
-    if (!find(e, handle, &p)) return false;
+    if (!find(e, handle, &p)) return mem_leave(false);
     field_context context = *effect_pass_host(e->effect)->context;
     for (size_t i = 0; i < count; i++) {
         context.time = times[i];
         bool done = p.face.thing == ROIL_CAMERA && !p.node ? evaluate_camera(e, &context, out[i])
                     : p.node                               ? evaluate_place(&p, &context, out[i])
                              : (memcpy(out[i], p.face.at, sizeof p.face.at), true);
-        if (!done) return err_set("%s.%s has no place at %g s", p.face.name, p.face.part, times[i]);
+        if (!done)
+            return mem_leave(
+                err_set("%s.%s has no place at %g s", p.face.name, p.face.part, times[i]));
     }
-    return true;
+    return mem_leave(true);
 }
 
 // ---- what fills space ---------------------------------------------------------------------------
 
 bool roil_probe(roil_effect *e, float x, float y, roil_probed *out) {
+    mem_enter();
     effect_probed found;
     time_limit time = roil_time_limit(e->owner), *before = time_limit_enter(&time);
     bool done = effect_probe(e->effect, x, y, &found);
@@ -434,5 +439,5 @@ bool roil_probe(roil_effect *e, float x, float y, roil_probed *out) {
         out->values[i].components = found.values[i].components;
         memcpy(out->values[i].value, found.values[i].value, sizeof out->values[i].value);
     }
-    return done;
+    return mem_leave(done);
 }

@@ -17,7 +17,7 @@ static gpu_image *make_texture(gpu *g, uint32_t width, uint32_t height) {
                                                  .use = GPU_USE_SAMPLED | GPU_USE_STORAGE});
 }
 
-roil_texture *roil_texture_create(roil *r, uint32_t width, uint32_t height, const uint8_t *rgba) {
+static roil_texture *create_texture(roil *r, uint32_t width, uint32_t height, const uint8_t *rgba) {
     if (!r->device) {
         err_set("no device: there are no textures");
         return NULL;
@@ -35,6 +35,13 @@ roil_texture *roil_texture_create(roil *r, uint32_t width, uint32_t height, cons
     roil_texture *t = mem_alloc(sizeof *t);
     t->image = image;
     return t;
+}
+
+roil_texture *roil_texture_create(roil *r, uint32_t width, uint32_t height, const uint8_t *rgba) {
+    mem_enter();
+    roil_texture *made = create_texture(r, width, height, rgba);
+    LEAVE_WITH(made, roil_texture_destroy(r, made));
+    return made;
 }
 
 void roil_texture_destroy(roil *r, roil_texture *t) {
@@ -93,7 +100,7 @@ static bool still_fill(roil *r, roil_still *s, gpu_image *picture) {
     return done && ended;
 }
 
-roil_still *roil_still_create(roil_effect *e) {
+static roil_still *create_still(roil_effect *e) {
     roil *r = e->owner;
     gpu_image *picture = view_picture(e);
     if (!picture) {
@@ -110,6 +117,13 @@ roil_still *roil_still_create(roil_effect *e) {
     if (make_way(r, s) && still_fill(r, s, picture)) return s;
     roil_still_destroy(r, s);
     return NULL;
+}
+
+roil_still *roil_still_create(roil_effect *e) {
+    mem_enter();
+    roil_still *made = create_still(e);
+    LEAVE_WITH(made, roil_still_destroy(e->owner, made));
+    return made;
 }
 
 // Brings it over once it has been drawn. False also when it has not.

@@ -194,15 +194,16 @@ static void color_of(const float texel[4], bool velocity, uint8_t out[4]) {
 
 bool roil_template_icon(roil_effect *e, const char *file, bool velocity, uint32_t side,
                         uint8_t *out) {
+    mem_enter();
     const template_file *t = read_template(e, file);
-    if (!t) return false;
-    if (!t->square) return err_set("%s is no template: it is not square", file);
+    if (!t) return mem_leave(false);
+    if (!t->square) return mem_leave(err_set("%s is no template: it is not square", file));
     for (uint32_t y = 0; y < side; y++)
         for (uint32_t x = 0; x < side; x++) {
             uint32_t i = x * TEMPLATE_TILE / side, j = y * TEMPLATE_TILE / side;
             color_of(t->rgba + 4 * (j * TEMPLATE_TILE + i), velocity, out + 4 * (y * side + x));
         }
-    return true;
+    return mem_leave(true);
 }
 
 // ---- putting ----------------------------------------------------------------------------------
@@ -223,11 +224,12 @@ static slices_hand hand_of(const roil_template_use *use, const picture *image) {
 }
 
 bool roil_template_put(roil_effect *e, const roil_template_use *use) {
+    mem_enter();
     pass *p = roil_slices_find_square(e, &use->where);
     const template_file *t = p ? read_template(e, use->file) : NULL;
-    if (!t) return false;
+    if (!t) return mem_leave(false);
     const slices_hand hand = hand_of(use, &t->image);
-    return slices_put(p, &hand);
+    return mem_leave(slices_put(p, &hand));
 }
 
 // Copies a template of the library into the effect's folder, so that the effect's file can name it.
@@ -245,12 +247,13 @@ static bool adopt_template(const roil_effect *e, const char *file) {
 }
 
 char *roil_template_lua(roil_effect *e, const roil_template_use *use) {
+    mem_enter();
     const pass *p = roil_slices_find(e, use->where.flow, use->where.slice);
-    if (!p || !adopt_template(e, use->file)) return NULL;
+    if (!p || !adopt_template(e, use->file)) return roil_leave_text(NULL);
     const slices_hand hand = hand_of(use, NULL);
     strbuf line = {0}, file = {0};
     strbuf_add(&file, "templates/%s", use->file);
     slices_hand_line(&hand, pass_slices_variable(p), strbuf_text(&file), &line);
     strbuf_free(&file);
-    return line.text;
+    return roil_leave_text(line.text);
 }

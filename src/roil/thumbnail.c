@@ -23,10 +23,11 @@ static void take_mean(const png_image *image, const uint32_t from[2], const uint
 }
 
 bool roil_read_thumbnail(const char *png, uint32_t width, uint32_t height, uint8_t *rgba) {
+    mem_enter();
     arena memory = {0};
     png_image image;
     if (width < 1 || height < 1 || width > MOST || height > MOST)
-        return err_set("size %u x %u; accepted: 1 to %d each", width, height, MOST);
+        return mem_leave(err_set("size %u x %u; accepted: 1 to %d each", width, height, MOST));
     bool done = png_read(png, NULL, &memory, &image);
     if (done) {
         double scale = fmin((double)image.width / width, (double)image.height / height);
@@ -45,5 +46,5 @@ bool roil_read_thumbnail(const char *png, uint32_t width, uint32_t height, uint8
             }
     }
     arena_free(&memory);
-    return done;
+    return mem_leave(done);
 }

@@ -59,7 +59,7 @@ static void note_options(roil_volume *v, const roil_volume_desc *d) {
         if (given[i]) v->options[count++] = given[i];
 }
 
-roil_volume *roil_volume_create(roil_effect *e, const roil_volume_desc *desc) {
+static roil_volume *create_volume(roil_effect *e, const roil_volume_desc *desc) {
     roil_volume *v = mem_alloc(sizeof *v);
     v->owner = e;
     v->tolerance = desc->tolerance;
@@ -85,6 +85,13 @@ roil_volume *roil_volume_create(roil_effect *e, const roil_volume_desc *desc) {
     if (v->files) return v;
     volume_free(v);
     return NULL;
+}
+
+roil_volume *roil_volume_create(roil_effect *e, const roil_volume_desc *desc) {
+    mem_enter();
+    roil_volume *made = create_volume(e, desc);
+    LEAVE_WITH(made, roil_volume_finish(made));
+    return made;
 }
 
 roil_volume_info roil_volume_get_info(const roil_volume *v) {
@@ -155,10 +162,11 @@ static bool read_field(const roil_volume *v, size_t index, volume_file *f) {
 }
 
 bool roil_volume_save(roil_volume *v, const char *file) {
+    mem_enter();
     roil_effect *e = v->owner;
-    if (!e->frame) return err_set("there is no volume yet: render a frame first");
+    if (!e->frame) return mem_leave(err_set("there is no volume yet: render a frame first"));
     if (strcmp(path_extension(file), "vdb") != 0)
-        return err_set("output '%s'; accepted: .vdb", file);
+        return mem_leave(err_set("output '%s'; accepted: .vdb", file));
     volume_file *f = mem_alloc(sizeof *f);
     f->fps = effect_fps(e->effect);
     f->frame = e->shown;
@@ -171,14 +179,15 @@ bool roil_volume_save(roil_volume *v, const char *file) {
                                                 .options = v->options});
     bool done = str_copy(f->path, sizeof f->path, file) || path_too_long(file);
     for (size_t i = 0; done && i < v->content.count; i++) done = read_field(v, i, f);
-    if (done) return jobs_add(v->files, write_file, free_file, f);
+    if (done) return mem_leave(jobs_add(v->files, write_file, free_file, f));
     free_file(f);
-    return false;
+    return mem_leave(false);
 }
 
 bool roil_volume_finish(roil_volume *v) {
-    if (!v) return true;
+    mem_enter();
+    if (!v) return mem_leave(true);
     bool done = jobs_finish(v->files);
     volume_free(v);
-    return done;
+    return mem_leave(done);
 }

@@ -64,6 +64,7 @@ struct vm {
     budget_part *part; // of both, `reserved` bytes
     size_t reserved;
     bool over_budget;   // the last refusal was the budget's
+    bool starved;       // it was the heap's
     char refusal[1024]; // of STOP_BUDGET
     int refusals;       // growth requests refused in a row: Lua collects garbage after the first
     vm_stop stop;
@@ -198,7 +199,7 @@ static void note_block(vm *v, size_t size, bool string) {
 static bool may_grow(vm *v, size_t size, size_t grow) {
     size_t all = taken(v);
     if (v->stop) return size <= STOPPED_BLOCK && all + grow <= v->stopped_at + STOPPED_MARGIN;
-    v->over_budget = false;
+    v->over_budget = v->starved = false;
     if (all > v->desc.memory || grow > v->desc.memory - all) return false;
     v->over_budget = !vm_take(v, all + grow);
     if (v->over_budget) return false;
@@ -211,7 +212,7 @@ static void *vm_allocate(void *user, void *block, size_t old, size_t size) {
     vm *v = user;
     size_t held = block ? old : 0;
     if (size == 0) {
-        free(block);
+        mem_free(block);
         v->used -= held;
         return NULL;
     }
@@ -229,7 +230,8 @@ static void *vm_allocate(void *user, void *block, size_t old, size_t size) {
             vm_stop_for(v, v->over_budget ? STOP_BUDGET : STOP_MEMORY);
         return NULL;
     }
-    void *result = realloc(block, size);
+    void *result = mem_try(block, size);
+    if (!result) v->starved = size > held;
     if (!result) return NULL;
     if (size > held) {
         v->refusals = 0;
@@ -339,6 +341,12 @@ static void set_error(const char *text) {
     err_set("%s", clean);
 }
 
+static bool refuse_memory(const vm *v) {
+    if (v->over_budget) return err_set("%s", v->refusal);
+    if (v->starved) return err_set("out of memory, wanted by a script");
+    return err_set("memory limit of %zu MiB exceeded", v->desc.memory >> 20);
+}
+
 static void vm_report(vm *v, int status) {
     lua_State *L = v->lua;
     const char *text = lua_type(L, -1) == LUA_TSTRING ? lua_tostring(L, -1) : NULL;
@@ -349,10 +357,8 @@ static void vm_report(vm *v, int status) {
         size_t n = strlen(message);
         if (callers) snprintf(message + n, sizeof message - n, "%s", callers);
         set_error(message);
-    } else if (status == LUA_ERRMEM && v->over_budget) {
-        err_set("%s", v->refusal);
     } else if (status == LUA_ERRMEM) {
-        err_set("memory limit of %zu MiB exceeded", v->desc.memory >> 20);
+        refuse_memory(v);
     } else {
         set_error(text ? text : "(error without a message)");
     }
@@ -365,7 +371,7 @@ bool vm_call(vm *v, int args, int results, uint64_t instructions) {
     lua_State *L = v->lua;
     if (!lua_checkstack(L, results + 8)) {
         lua_pop(L, args + 1);
-        return err_set("memory limit of %zu MiB exceeded", v->desc.memory >> 20);
+        return refuse_memory(v);
     }
     if (v->depth == 0) {
         v->stop = STOP_NONE;
@@ -556,8 +562,8 @@ vm *vm_create(const vm_desc *desc) {
     v->interval = TICK;
     lua_State *L = lua_newstate(vm_allocate, v);
     if (!L) {
-        if (v->over_budget)
-            err_set("%s", v->refusal);
+        if (v->over_budget || v->starved)
+            refuse_memory(v);
         else
             err_set("a memory limit of %zu bytes is too small for a script", desc->memory);
         vm_destroy(v);

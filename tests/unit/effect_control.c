@@ -119,7 +119,7 @@ static void names_are_made_unique(void **state) {
     ok(effect_set(s->e, "fire", "0 #ff0000; 1 #00ff00"));
     assert_int_equal(effect_add_param(s->e, &fire), 0); // a parameter keeps its name
     assert_true(effect_control_palette(control_of(s, "fire_4")) == p);
-    assert_null(control_of(s, "fire_4")->moved);
+    assert_false(control_of(s, "fire_4")->moved);
     ok(effect_set(s->e, "fire", "1.5"));
     assert_true(effect_get_param(s->e, 0)->value[0] == 1.5f);
 }
@@ -160,16 +160,64 @@ static void every_kind_is_set_and_reset(void **state) {
     for (size_t i = 0; i < COUNT_OF(cases); i++) {
         const effect_control *c = control_of(s, cases[i][0]);
         ok(effect_set(s->e, c->name, cases[i][1]));
-        assert_string_equal(c->moved, cases[i][1]);
+        assert_string_equal(effect_control_setting(c), cases[i][1]);
         says(s, c->name, cases[i][1]);
         ok(effect_reset(s->e, c->name));
-        assert_null(c->moved);
+        assert_false(c->moved);
         says(s, c->name, c->initial);
         ok(effect_set(s->e, c->name, cases[i][1]));
         ok(effect_set(s->e, c->name, c->initial)); // what the script says is no setting
-        assert_null(c->moved);
+        assert_false(c->moved);
         says(s, c->name, c->initial);
     }
+}
+
+static size_t index_of(stage *s, const char *name) {
+    const effect_control *c = control_of(s, name);
+    size_t i = 0;
+    while (effect_get_control(s->e, i) != c) i++;
+    return i;
+}
+
+// By numbers as by text: what is kept of the setting is the same.
+static void numbers_are_set_without_text(void **state) {
+    stage *s = *state;
+    ok(pass_declare(add_march(s, NULL)));
+    assert_int_equal(effect_add_param(s->e, &gain), 0);
+    assert_int_equal(effect_add_param(s->e, &tint), 1);
+    add_palette(s, "fire", "fire");
+    ok(effect_check_settings(s->e));
+    static const struct {
+        const char *name;
+        float values[4];
+        int count;
+        const char *text;
+    } cases[] = {
+        {"gain", {1.25f}, 1, "1.25"},           {"tint", {1, 0.5f, 2}, 3, "1,0.5,2"},
+        {"camera.fov", {25}, 1, "25"},          {"camera.target", {1, 2, 3}, 3, "1,2,3"},
+        {"march.steps", {77}, 1, "77"},         {"march.albedo", {0.25f, 0, 1}, 3, "0.25,0,1"},
+        {"march.anisotropy", {0.5f}, 1, "0.5"},
+    };
+    for (size_t i = 0; i < COUNT_OF(cases); i++) {
+        const effect_control *c = control_of(s, cases[i].name);
+        ok(effect_set_numbers(s->e, index_of(s, c->name), cases[i].values, cases[i].count));
+        assert_true(c->moved);
+        assert_string_equal(effect_control_setting(c), cases[i].text);
+        says(s, c->name, cases[i].text);
+        assert_false(effect_set_numbers(s->e, index_of(s, c->name), cases[i].values, 2));
+        assert_error("not 2");
+        ok(effect_reset(s->e, c->name));
+        assert_null(effect_control_setting(c));
+        says(s, c->name, c->initial);
+    }
+    const float high = 1e6f;
+    assert_false(effect_set_numbers(s->e, index_of(s, "gain"), &high, 1));
+    assert_error("accepted: 0 to 2");
+    assert_false(effect_set_numbers(s->e, index_of(s, "march.mode"), &high, 1));
+    assert_error("is structure");
+    assert_false(effect_set_numbers(s->e, index_of(s, "fire"), &high, 1));
+    assert_error("set by its text");
+    assert_false(control_of(s, "gain")->moved);
 }
 
 static void what_is_read_over_age_follows_its_curve(void **state) {
@@ -217,7 +265,7 @@ static void refused_text_changes_nothing(void **state) {
         const effect_control *c = control_of(s, cases[i][0]);
         if (effect_set(s->e, c->name, cases[i][1])) fail_msg("%s was taken", cases[i][1]);
         assert_error(cases[i][2]);
-        assert_null(c->moved);
+        assert_false(c->moved);
         says(s, c->name, c->initial);
     }
 }
@@ -308,7 +356,8 @@ static void settings_reach_every_kind_and_are_told(void **state) {
     ok(declare(s));
     for (size_t i = 0; i < COUNT_OF(settings); i++) {
         says(s, settings[i].name, settings[i].text);
-        assert_string_equal(control_of(s, settings[i].name)->moved, settings[i].text);
+        assert_string_equal(effect_control_setting(control_of(s, settings[i].name)),
+                            settings[i].text);
     }
     assert_string_equal(control_of(s, "march.mode")->initial, "physical");
     assert_string_equal(control_of(s, "camera.eye")->initial, "orbit 6 0 10");
@@ -359,6 +408,7 @@ int main(void) {
         STAGE_TEST(names_are_made_unique),
         STAGE_TEST(names_not_known_get_a_suggestion),
         STAGE_TEST(every_kind_is_set_and_reset),
+        STAGE_TEST(numbers_are_set_without_text),
         STAGE_TEST(what_is_read_over_age_follows_its_curve),
         STAGE_TEST(refused_text_changes_nothing),
         STAGE_TEST(eye_of_an_orbit_comes_and_goes),

@@ -96,6 +96,29 @@ static void moved_control_remembers_the_scripts_value(void **state) {
     roil_unload(e);
 }
 
+static void engine_sets_numbers_by_handles(void **state) {
+    (void)state;
+    roil_effect *e = open();
+    size_t density, look, steps;
+    const float thick = 42, word = 1, many = 99, wrong[] = {1, 2};
+    need(roil_find_control(e, "density", &density) && roil_find_control(e, "look", &look) &&
+         roil_find_control(e, "march.steps", &steps));
+    need(roil_set_floats(e, density, &thick, 1));
+    need(roil_set_floats(e, look, &word, 1));
+    need(roil_set_floats(e, steps, &many, 1)); // which a parameter has moved
+    assert_true(control_of(e, "density").value[0] == 42 && control_of(e, "density").moved);
+    char *text = roil_control_text(e, "look");
+    assert_string_equal(text, "a \"b\"");
+    roil_free(text);
+    roil_control c = control_of(e, "march.steps");
+    assert_true(c.value[0] == 99 && c.moved && !c.driven);
+    refused(roil_set_floats(e, density, wrong, 2), "density has 1 numbers, not 2");
+    refused(roil_set_floats(e, roil_control_count(e), &thick, 1), "there is no control");
+    need(roil_reset(e, "density"));
+    assert_true(control_of(e, "density").value[0] == 20);
+    roil_unload(e);
+}
+
 // Every control as Lua, in a script: it loads, and what comes out is what went in.
 static void check_lua(roil_effect *e, const char *name, const char *before, const char *after) {
     char *lua = roil_control_lua(e, name), *text = roil_control_text(e, name);
@@ -263,6 +286,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(control_tells_what_it_is),
         cmocka_unit_test(moved_control_remembers_the_scripts_value),
+        cmocka_unit_test(engine_sets_numbers_by_handles),
         cmocka_unit_test(every_control_is_lua_that_loads),
         cmocka_unit_test(text_that_is_said_can_be_set),
         cmocka_unit_test(palette_and_curve_are_taken_apart_and_put_together),

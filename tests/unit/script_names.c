@@ -137,7 +137,8 @@ static void settings_reach_what_a_script_names(void **state) {
                                  NULL, settings, COUNT_OF(settings));
     if (!e || !effect_check_settings(e)) fail_msg("%s", err_get());
     for (size_t i = 0; i < COUNT_OF(settings); i++)
-        assert_string_equal(effect_find_control(e, settings[i].name)->moved, settings[i].text);
+        assert_string_equal(effect_control_setting(effect_find_control(e, settings[i].name)),
+                            settings[i].text);
     assert_string_equal(effect_find_control(e, "camera.fov")->initial, "50");
     assert_true(effect_scene(e)->camera.fov->value[0] == 20);
     effect_destroy(e);
