@@ -9,6 +9,8 @@ from lib.pictures import packed_pixels
 from lib.program import BINARY, GROUND, PROGRAM, PUFF, SOURCE, VOLUME, Case, main
 
 ENGINE = os.path.join(SOURCE, "tests/embed/pictures.c")
+POLITE = os.path.join(SOURCE, "tests/embed/polite.c")
+POINTS = os.environ.get("ROIL_TEST_POINTS", "48")  # allocations that fail; of those while it draws a quarter
 WARNINGS = ["-Wall", "-Wextra", "-Werror", "-pedantic"]
 BALL = VOLUME % "sphere { position = {1, 1, 1}, radius = 1 } * 3"
 
@@ -61,12 +63,12 @@ class Embed(Case):
         for i, expected in enumerate(self.expected):
             self.assertEqual(packed_pixels(self.read(f"{i}.png")), expected)
 
-    def compile(self, out, language, *static):
+    def compile(self, out, language, *static, source=ENGINE):
         compiler = {"c17": "cc", "c++17": "c++"}[language]
         flags = run("pkg-config", *static, "--cflags", "--libs", "roil", env=self.environment).split()
         if static:
             flags = ["-l:libroil.a" if flag == "-lroil" else flag for flag in flags]
-        run(compiler, "-x", language.rstrip("17"), f"-std={language}", *WARNINGS, ENGINE, "-o", self.path(out),
+        run(compiler, "-x", language.rstrip("17"), f"-std={language}", *WARNINGS, source, "-o", self.path(out),
             "-x", "none", *flags, env=self.environment)
         return self.path(out)
 
@@ -97,6 +99,28 @@ class Embed(Case):
         self.assertIn("engine_c:", targets)
         self.assertNotIn("roil_app", targets)
         self.assertTrue(os.path.exists(self.path("build/_deps/roil-build/share/roil/shaders/shared.h")))
+
+    def told_by(self, *arguments):
+        """What a host that is hard to live with says; it draws the effect that is named."""
+        host = self.compile("polite", "c17", source=POLITE)
+        done = subprocess.run([host, *arguments], cwd=self.top, text=True, check=False, stdout=subprocess.PIPE,
+                              stderr=subprocess.PIPE, env={**self.environment, "LOCPATH": os.path.join(BINARY, "locale")})
+        self.assertEqual((done.returncode, done.stderr), (0, ""), done.stdout)
+        return done.stdout
+
+    def test_many_threads_in_a_strange_process(self):
+        self.assertEqual(self.told_by("threads", "puff.lua"), "64 threads, 2 of them drew\n")
+
+    def test_memory_that_fails_is_an_error_of_the_call(self):
+        told = self.told_by("memory", "puff.lua", POINTS)
+        self.assertEqual(len(re.findall(r"(\d+) of \d+ uses failed", told)), 2, told)
+        print(told, end="")
+
+    def test_numbers_of_a_frame_are_cheap(self):
+        told = self.told_by("numbers", "puff.lua")
+        print(told, end="")
+        by_number, by_text = map(float, re.search(r"([\d.]+) us or ([\d.]+) us", told.replace(",", ".")).groups())
+        self.assertLess(by_number, by_text)
 
     def test_exports_what_the_headers_declare(self):
         declared = set()
