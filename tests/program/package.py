@@ -67,7 +67,8 @@ class Package(Case):
         for name in ("libstdc++.so.6", "libvulkan.so.1", "libz.so.1"):  # for a machine that has none
             self.assertTrue(os.path.exists(f"{self.package}/lib/fallback/{name}"), name)
         self.assertFalse([name for name in os.listdir(f"{self.package}/lib") if name.startswith("libc.")])
-        self.assertTrue(os.path.getsize(f"{self.package}/licences/libavcodec59"))
+        for name in ("libavcodec59", "glslang-dev", "spirv-tools", "libimgui-dev", "libcglm-dev", "roil"):
+            self.assertTrue(os.path.getsize(f"{self.package}/licences/{name}"), name)
 
     def test_stays_small(self):
         """The quickest compression stands for the thorough one, which takes off a sixth more."""
