@@ -231,7 +231,8 @@ static void *vm_allocate(void *user, void *block, size_t old, size_t size) {
         return NULL;
     }
     void *result = mem_try(block, size);
-    if (!result) v->starved = size > held;
+    if (!result && size <= held) result = block; // Lua does not expect that to fail
+    v->starved = !result;
     if (!result) return NULL;
     if (size > held) {
         v->refusals = 0;

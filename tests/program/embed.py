@@ -10,7 +10,7 @@ from lib.program import BINARY, GROUND, PROGRAM, PUFF, SOURCE, VOLUME, Case, mai
 
 ENGINE = os.path.join(SOURCE, "tests/embed/pictures.c")
 POLITE = os.path.join(SOURCE, "tests/embed/polite.c")
-POINTS = os.environ.get("ROIL_TEST_POINTS", "48")  # allocations that fail; of those while it draws a quarter
+POINTS = os.environ.get("ROIL_TEST_POINTS", "24")  # allocations that fail; of those while it draws a quarter
 WARNINGS = ["-Wall", "-Wextra", "-Werror", "-pedantic"]
 BALL = VOLUME % "sphere { position = {1, 1, 1}, radius = 1 } * 3"
 

@@ -104,7 +104,7 @@ static void reserve_grows_and_keeps_what_was_there(void **state) {
 
 static void empty_blocks_are_not_null(void **state) {
     (void)state;
-    void *a = mem_alloc(0), *b = mem_copy(NULL, 0), *c = mem_resize(NULL, 0);
+    void *a = mem_alloc(0), *b = mem_copy(NULL, 0), *c = mem_resize(NULL, 0, 0);
     assert_true(a && b && c);
     mem_free(a);
     mem_free(b);
