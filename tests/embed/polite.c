@@ -90,6 +90,11 @@ static void *use_in_thread(void *user) {
     return NULL;
 }
 
+static void count_message(void *user, int level, const char *text) {
+    if (level == ROIL_INFO && strcmp(text, "said by the script") == 0) ++*(int *)user;
+}
+
+// Nobody hears of what the threads' scripts say, until somebody wants to.
 static void try_threads(const char *file) {
     static use uses[THREADS];
     pthread_t threads[THREADS];
@@ -103,6 +108,13 @@ static void try_threads(const char *file) {
         if (uses[i].failed) fail("a thread failed");
         if (i < DRAWING && memcmp(uses[i].pixels, uses[0].pixels, BYTES) != 0) fail("differs");
     }
+    int said = 0;
+    use last = {.file = file};
+    roil_set_log(count_message, &said, ROIL_INFO);
+    use_roil(&last);
+    roil_set_log(NULL, NULL, ROIL_INFO);
+    use_roil(&last);
+    if (said != 1) fail("the script's message is not told once");
     printf("%d threads, %d of them drew\n", THREADS, DRAWING);
 }
 

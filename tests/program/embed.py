@@ -31,7 +31,7 @@ class Embed(Case):
         run("cmake", "--install", BINARY, "--prefix", installed)
         cls.prefix = os.path.join(cls.top, "moved")  # nothing may say where it was installed
         os.rename(installed, cls.prefix)
-        for name, text in ("puff.lua", PUFF), ("ball.lua", BALL), ("ground.obj", GROUND):
+        for name, text in ("puff.lua", PUFF), ("loud.lua", "print('said by the script')\n" + PUFF), ("ball.lua", BALL), ("ground.obj", GROUND):
             with open(os.path.join(cls.top, name), "w", encoding="utf-8") as f:
                 f.write(text)
         cls.lib = os.path.dirname(cls.find(r"libroil\.so"))
@@ -109,7 +109,7 @@ class Embed(Case):
         return done.stdout
 
     def test_many_threads_in_a_strange_process(self):
-        self.assertEqual(self.told_by("threads", "puff.lua"), "64 threads, 2 of them drew\n")
+        self.assertEqual(self.told_by("threads", "loud.lua"), "64 threads, 2 of them drew\n")
 
     def test_memory_that_fails_is_an_error_of_the_call(self):
         told = self.told_by("memory", "puff.lua", POINTS)
