@@ -415,20 +415,27 @@ static roil_edits *create_edits(roil_effect *e, const effect_control *one, bool 
 }
 
 roil_edits *roil_edits_create(roil_effect *e, const char *control) {
+    mem_enter();
     const effect_control *one = control ? effect_find_control(e->effect, control) : NULL;
-    return control && !one ? NULL : create_edits(e, one, false);
+    roil_edits *made = control && !one ? NULL : create_edits(e, one, false);
+    LEAVE_WITH(made, roil_edits_free(made));
+    return made;
 }
 
 roil_edits *roil_edits_create_parameter(roil_effect *e, const char *control) {
+    mem_enter();
     const effect_control *c = effect_find_control(e->effect, control);
+    roil_edits *made = NULL;
     if (c && (is_param(c) || is_ramp(c) || c->kind == EFFECT_CONTROL_EVENTS ||
               c->kind == EFFECT_CONTROL_LOADED)) {
         err_set("'%s' cannot become a parameter; numbers and words of passes, fields, camera, sun, "
                 "sky, lights, materials, meshes and nodes can",
                 control);
-        return NULL;
+    } else if (c) {
+        made = create_edits(e, c, true);
     }
-    return c ? create_edits(e, c, true) : NULL;
+    LEAVE_WITH(made, roil_edits_free(made));
+    return made;
 }
 
 size_t roil_edits_list(const roil_edits *x, roil_edit *out, size_t capacity) {
