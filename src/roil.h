@@ -200,7 +200,8 @@ typedef struct roil_setting { // "steps" = "64", "march.mode" = "paper", "tint" 
     const char *name, *value;
 } roil_setting;
 
-// Runs an effect file and returns the effect, or NULL with a message. `settings` (may be NULL when
+// Runs an effect file, or the one of a bundle ("smoke.roil", roil_export.h), and returns the
+// effect, or NULL with a message. `settings` (may be NULL when
 // `count` is 0) replace values that the script declares, including those that change its structure.
 // A name that the effect does not have is an error.
 roil_effect *roil_load(roil *r, const char *file, const roil_setting *settings, size_t count);
@@ -216,8 +217,9 @@ size_t roil_files(const roil_effect *e, const char **out, size_t capacity);
 bool roil_check(roil_effect *e);
 
 typedef struct roil_effect_info {
-    const char *name; // lives as long as the effect
-    double fps;       // frames per second
+    const char *name;             // this and the next two live as long as the effect
+    const char *author, *licence; // NULL: it does not say
+    double fps;                   // frames per second
     uint32_t first_frame, frames;
 } roil_effect_info;
 roil_effect_info roil_get_info(const roil_effect *e);
@@ -573,8 +575,9 @@ typedef struct roil_live_desc {
 } roil_live_desc;
 
 // Starts to watch the effect's files and to build it, on threads of its own, whenever one changes.
-// A file that is broken is watched until it is mended: NULL is returned only without a device, or
-// when the file's folder cannot be watched.
+// A file that is broken is watched until it is mended: NULL is returned only without a device, when
+// the file's folder cannot be watched, or when the file is a bundle and cannot be unpacked. What a
+// bundle was when it was opened goes on.
 roil_live *roil_live_create(roil *r, const roil_live_desc *desc);
 // Cancels a build that is running, waits for it a second and frees `l`. Returns false when the
 // build hangs: it keeps using the device and the memory, and roil_destroy then frees nothing. NULL
@@ -721,7 +724,8 @@ char *roil_info_fields(const char *name);          // NULL: one line for each; a
 char *roil_info_params(roil_effect *e); // memory; parameters; uniforms and options of passes
 char *roil_info_graph(roil_effect *e);  // Graphviz dot; after roil_check or roil_prepare
 char *roil_info_vdb(const char *file);  // any thread
-char *roil_info_effects(roil *r);       // those that lie in effects/ of the home, a line for each
+char *roil_info_inputs(roil *r, const char *file); // whose effect it is, and what it reads
+char *roil_info_effects(roil *r); // those that lie in effects/ of the home, a line for each
 
 // The same for programs, as JSON:
 // {"roil": version, "words": [...], "passes": [...]}. A word has "name", "is" ("field": a function
@@ -739,6 +743,7 @@ char *roil_info_devices_json(void);
 // {"effect": {"name", "fps", "first_frame", "frames"}, "controls": [...]}: values, with "value" and
 // "initial" or "text", and the members of roil_control.
 char *roil_info_params_json(roil_effect *e);
+char *roil_info_inputs_json(roil *r, const char *file);
 // {"effects": [{"name", "file", "summary", "picture"}]}; "picture" is a PNG file, if there is one.
 char *roil_info_effects_json(roil *r);
 char *roil_info_effects_page(roil *r); // a page of HTML that needs no other file, with the pictures

@@ -96,6 +96,30 @@ bool roil_sheet_save(roil_sheet *s, const char *file, const roil_sheet_options *
 const char *roil_sheet_summary(const roil_sheet *s);
 void roil_sheet_free(roil_sheet *s); // NULL is allowed
 
+// Bundles: one file NAME.roil with an effect and all that it reads, which roil_load and
+// roil_live_create take like an effect's file. It is never changed. It is a tar archive (POSIX
+// ustar) of a folder in which the effect has the folder's name. One that comes from a stranger is
+// unpacked into a folder of the process, which is removed with the last `roil`; it reads nothing
+// but that and the program's own files, no assets.
+typedef struct roil_input {
+    const char *name; // from the effect's folder, or from that of the assets in which it lies
+    const char *path; // where it is now
+    uint64_t size;    // bytes
+} roil_input;
+typedef struct roil_inputs {
+    const char *effect; // the name of its file, one of `files`
+    roil_effect_info info;
+    const roil_input *files; // by name
+    size_t count;
+} roil_inputs;
+// Lists the files that an effect or a bundle reads, as it is and with every word of its choices,
+// and its presets, but not the program's own. NULL with a message.
+roil_inputs *roil_collect(roil *r, const char *file);
+void roil_free_inputs(roil_inputs *inputs); // NULL is allowed
+// Writes a bundle of them. Equal files give equal bytes. False with a message, and no file: a name
+// cannot be in a bundle, or what was packed does not load by itself.
+bool roil_bundle(roil *r, const roil_inputs *inputs, const char *file);
+
 #ifdef __cplusplus
 }
 #endif

@@ -12,6 +12,7 @@ enum { APP_DONE = 0, APP_BAD_INPUT = 1, APP_BAD_USAGE = 2, APP_DIFFERS = 3 };
 int cmd_render(int argc, const char **argv);
 int cmd_repro(int argc, const char **argv);
 int cmd_new(int argc, const char **argv);
+int cmd_bundle(int argc, const char **argv);
 int cmd_check(int argc, const char **argv);
 int cmd_info(int argc, const char **argv);
 int cmd_export(int argc, const char **argv);
@@ -30,17 +31,6 @@ int app_close(roil *r, int status);
 
 // Prints text that may come from a file, without what a terminal would obey (str_make_printable).
 void app_print(FILE *out, const char *format, ...) __attribute__((format(printf, 2, 3)));
-
-// ---- files ------------------------------------------------------------------------------------
-
-typedef struct app_files {
-    char **paths; // from the effect's folder, sorted
-    size_t count, capacity;
-} app_files;
-// Lists the files in its folder that an effect reads, itself included: as it is, and with every
-// word of its choices. False with a message.
-bool app_collect_files(roil *r, const char *effect, app_files *out);
-void app_free_files(app_files *files);
 
 // ---- JSON -------------------------------------------------------------------------------------
 

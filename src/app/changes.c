@@ -85,9 +85,9 @@ static bool write_preset(live *l, void *name) {
 }
 
 bool live_write_preset(live *l, char *name) {
-    const char *file = path_name(l->file);
     char path[PATH_CAP], label[96];
-    int stem = (int)(strlen(file) - (str_ends_with(file, ".lua") ? strlen(".lua") : 0));
+    int stem;
+    const char *file = path_stem(l->file, &stem);
     snprintf(path, sizeof path, "%.*s.presets/%s.lua", stem, file, name);
     snprintf(label, sizeof label, "saved preset %.60s", name);
     return live_write(l, path, label, write_preset, name);

@@ -89,8 +89,8 @@ static bool take_inputs(bench_options *o, poptContext context) {
             "which sweep? usage: roil bench SWEEP.lua [options]; scripts/bench has some");
     if (o->input_count > 1) return err_set("'%s': one sweep at a time", o->inputs[1]);
     o->order.file = o->inputs[0];
-    const char *name = path_name(o->order.file);
-    int length = (int)strlen(name) - (str_ends_with(name, ".lua") ? 4 : 0);
+    int length;
+    const char *name = path_stem(o->order.file, &length);
     snprintf(o->folder, sizeof o->folder, "out/bench/%.*s", length, name);
     if (!o->order.folder) o->order.folder = o->folder;
     return true;

@@ -75,6 +75,20 @@ static int info_effect(info_job *j) {
     return status;
 }
 
+// Tells about an effect or a bundle: whose it is, and what it reads.
+static int info_file(const info_job *j) {
+    roil *r =
+        roil_create(&(roil_desc){.no_device = true, .assets = j->assets, .memory = j->memory});
+    int status;
+    if (!r || !app_check_effect(j->what))
+        status = info_fail(j, r, j->what);
+    else
+        status = info_print(j, j->json ? roil_info_inputs_json(r, j->what)
+                                       : roil_info_inputs(r, j->what));
+    roil_destroy(r);
+    return status;
+}
+
 static int info_devices(const info_job *j) {
     return info_print(j, j->json ? roil_info_devices_json() : roil_info_devices());
 }
@@ -110,6 +124,7 @@ static int info_index(const info_job *j) {
         "effect\n"
         "roil info graph EFFECT.lua      its passes in order, their images and memory\n"
         "roil info FILE.vdb              the grids of a volume\n"
+        "roil info EFFECT.lua|FILE.roil  whose it is, and what it reads\n"
         "roil info --json                passes and fields, for programs; with a topic that alone\n"
         "roil info --lua-meta            the same for editors, as lua-language-server reads it\n");
     return info_devices(j);
@@ -130,6 +145,7 @@ static int info(info_job *j) {
     if (strcmp(what, "passes") == 0) return info_reference(j, what);
     if (strcmp(what, "fields") == 0)
         return j->json ? info_reference(j, "words") : info_print(j, roil_info_fields(j->name));
+    if (str_ends_with(what, ".lua") || str_ends_with(what, ".roil")) return info_file(j);
     bool plain = strcmp(what, "graph") == 0 || str_ends_with(what, ".vdb");
     if (j->json && plain)
         return app_fail(
@@ -143,7 +159,7 @@ static int info(info_job *j) {
         return app_fail(APP_BAD_USAGE, "info: unknown topic '%s'; did you mean '%s'?", what, near);
     return app_fail(APP_BAD_USAGE,
                     "info: unknown topic '%s'; accepted: device, passes [NAME], fields [NAME], "
-                    "effects, params EFFECT.lua, graph EFFECT.lua, FILE.vdb",
+                    "effects, params EFFECT.lua, graph EFFECT.lua, FILE.vdb, EFFECT.lua, FILE.roil",
                     what);
 }
 
@@ -165,7 +181,8 @@ int cmd_info(int argc, const char **argv) {
         POPT_AUTOHELP POPT_TABLEEND};
     poptContext context = app_options("roil info", argc, argv, options,
                                       "[device | passes [NAME] | fields [NAME] | effects | params "
-                                      "EFFECT.lua | graph EFFECT.lua | FILE.vdb]");
+                                      "EFFECT.lua | graph EFFECT.lua | FILE.vdb | "
+                                      "EFFECT.lua | FILE.roil]");
     int code, status;
     bool right = true;
     while (right && (code = poptGetNextOpt(context)) > 0) {

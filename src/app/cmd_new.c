@@ -1,4 +1,5 @@
 // roil new NAME: a folder with an effect that draws, all that it reads, and what editors need.
+#include "app/device_options.h"
 #include "app/starts.h"
 #include "base/error.h"
 #include "base/memory.h"
@@ -54,13 +55,13 @@ static bool make_all(roil *r, const char *file, const char *folder, const char *
     return done;
 }
 
-static int make(char *folder, const char *from) {
+static int make(char *folder, const char *from, const char *const *assets) {
     while (strlen(folder) > 1 && str_ends_with(folder, "/")) folder[strlen(folder) - 1] = '\0';
     const char *name = name_of(folder);
     if (!name || !is_free(folder)) return app_fail_input();
     char file[PATH_CAP];
-    roil *r = roil_create(&(roil_desc){.no_device = true});
-    bool own = str_ends_with(from, ".lua");
+    roil *r = roil_create(&(roil_desc){.no_device = true, .assets = assets});
+    bool own = str_ends_with(from, ".lua") || str_ends_with(from, ".roil");
     bool found = r && (own ? app_check_effect(from) && str_copy(file, sizeof file, from)
                            : starts_find(roil_home(r), from, file));
     int status = found && make_all(r, file, folder, name) ? APP_DONE : app_fail_input();
@@ -69,12 +70,13 @@ static int make(char *folder, const char *from) {
 }
 
 int cmd_new(int argc, const char **argv) {
-    const char *from = "campfire";
+    const char *from = "campfire", **assets = NULL;
     const struct poptOption options[] = {
         {"from", '\0', POPT_ARG_STRING, &from, 0,
          "what it begins as: campfire, fire, smoke, burst, or one of `roil info effects` (default: "
          "campfire)",
-         "EFFECT|FILE.lua"},
+         "EFFECT|FILE.lua|FILE.roil"},
+        APP_ASSETS_ROW(&assets),
         POPT_AUTOHELP POPT_TABLEEND};
     poptContext context = app_options("roil new", argc, argv, options, "NAME [--from EFFECT]");
     int code = poptGetNextOpt(context), status;
@@ -86,7 +88,7 @@ int cmd_new(int argc, const char **argv) {
         status = app_fail(APP_BAD_USAGE, "new: one name is needed, as in `roil new my-fire`");
     } else {
         char *folder = mem_copy(name, strlen(name) + 1);
-        status = make(folder, from);
+        status = make(folder, from, assets);
         mem_free(folder);
     }
     poptFreeContext(context);

@@ -284,9 +284,9 @@ static bool render_complete(job *j, roil_effect *e) {
     bool picture = j->simulates;
     for (size_t i = 0; i < j->output_count; i++) picture = picture || !j->outputs[i].image;
     if (!picture) {
-        const char *name = path_name(j->file);
-        snprintf(j->default_output, sizeof j->default_output, "out/%.*s/%%04d.png",
-                 (int)(strlen(name) - (str_ends_with(name, ".lua") ? 4 : 0)), name);
+        int length;
+        const char *name = path_stem(j->file, &length);
+        snprintf(j->default_output, sizeof j->default_output, "out/%.*s/%%04d.png", length, name);
         if (!add_output(j, j->default_output, NULL)) return false;
         j->outputs[j->output_count - 1].ours = true;
     }

@@ -84,8 +84,8 @@ static bool take_effect(tune_options *o, poptContext context) {
         return err_set("which effect? usage: roil tune EFFECT.lua --max-ms MS | --max-error E");
     const char *more = poptGetArg(context);
     if (more) return err_set("'%s': one effect at a time", more);
-    const char *name = path_name(order->effect);
-    int length = (int)strlen(name) - (str_ends_with(name, ".lua") ? 4 : 0);
+    int length;
+    const char *name = path_stem(order->effect, &length);
     snprintf(o->folder, sizeof o->folder, "out/tune/%.*s", length, name);
     if (!order->folder) order->folder = o->folder;
     return true;

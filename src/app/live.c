@@ -162,8 +162,8 @@ static void loop_advance(live *l, loop *p, double seconds) {
 // ---- screenshot -------------------------------------------------------------------------------
 
 static void shot_name(const live *l, int number, char *out, size_t capacity) {
-    const char *name = path_name(l->file);
-    int length = (int)(strlen(name) - (str_ends_with(name, ".lua") ? 4 : 0));
+    int length;
+    const char *name = path_stem(l->file, &length);
     char again[16] = "";
     if (number > 1) snprintf(again, sizeof again, "-%d", number);
     snprintf(out, capacity, "%.*s-%.6g%s.png", length, name, l->time.frame, again);

@@ -21,6 +21,7 @@ static const app_command commands[] = {
     {"render", cmd_render, "render frames of an effect to pictures and films"},
     {"live", cmd_live, "open a window in which an effect is tuned while it runs"},
     {"new", cmd_new, "make a folder with an effect to begin with, and all that it reads"},
+    {"bundle", cmd_bundle, "pack an effect and all that it reads into one file, to give away"},
     {"check", cmd_check, "load, compile and validate effects; render nothing"},
     {"info", cmd_info, "tell about devices, passes, fields, an effect or a VDB file"},
     {"export", cmd_export,
@@ -131,7 +132,7 @@ static int main_run_command(int argc, char **argv) {
             return commands[i].run(argc - 1, (const char **)argv + 1);
         names[i] = commands[i].name;
     }
-    if (str_ends_with(wanted, ".lua"))
+    if (str_ends_with(wanted, ".lua") || str_ends_with(wanted, ".roil"))
         return app_fail(APP_BAD_USAGE, "'%s' is no command; `roil live %s` shows an effect", wanted,
                         wanted);
     const char *near = str_nearest(wanted, names, COUNT_OF(names));

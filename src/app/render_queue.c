@@ -158,8 +158,8 @@ void render_queue_update(live *l) {
 // ---- asking -----------------------------------------------------------------------------------
 
 static void fill(live *l, render_queue *q) {
-    const char *name = path_name(l->file);
-    int length = (int)(strlen(name) - (str_ends_with(name, ".lua") ? 4 : 0));
+    int length;
+    const char *name = path_stem(l->file, &length);
     snprintf(q->frames, sizeof q->frames, "%.0f-%.0f", l->time.from, l->time.to);
     if (q->filled) return;
     str_copy(q->size, sizeof q->size, "1920x1080");

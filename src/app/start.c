@@ -46,18 +46,19 @@ static void add_card(page *p, const char *section, const char *file) {
     MEM_RESERVE(p->cards, p->count + 1, p->capacity);
     card *c = &p->cards[p->count++];
     *c = (card){.section = section};
-    const char *name = path_name(file);
+    int length;
+    const char *name = path_stem(file, &length);
     str_copy(c->file, sizeof c->file, file);
-    snprintf(c->name, sizeof c->name, "%.*s", (int)(strlen(name) - strlen(".lua")), name);
+    snprintf(c->name, sizeof c->name, "%.*s", length, name);
 }
 
-static void add_folder(page *p, const char *section, const char *folder) {
+static void add_files(page *p, const char *section, const char *folder, const char *names) {
     char pattern[PATH_CAP];
     file_list all;
-    if (!path_join(pattern, folder, "*.lua") || !file_glob(pattern, &all)) return;
+    if (!path_join(pattern, folder, names) || !file_glob(pattern, &all)) return;
     for (size_t i = 0; i < all.count; i++) {
         const char *file = all.paths[i]; // "./a.lua" is said as "a.lua"
-        if (app_declares_effect(file))
+        if (str_ends_with(file, ".roil") || app_declares_effect(file))
             add_card(p, section, strncmp(file, "./", 2) == 0 ? file + 2 : file);
     }
     file_list_free(&all);
@@ -68,8 +69,9 @@ static void list_effects(page *p) {
     size_t count = recent_list(recent);
     for (size_t i = 0; i < count; i++) add_card(p, "Recent", recent[i]);
     mem_free(recent);
-    add_folder(p, "In this folder", ".");
-    if (path_join(folder, p->home, "effects")) add_folder(p, "Shipped with roil", folder);
+    add_files(p, "In this folder", ".", "*.lua");
+    add_files(p, "In this folder", ".", "*.roil");
+    if (path_join(folder, p->home, "effects")) add_files(p, "Shipped with roil", folder, "*.lua");
 }
 
 // Looks for one more picture of those that are seen. False: there is none left.

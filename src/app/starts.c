@@ -2,6 +2,7 @@
 #include "base/error.h"
 #include "base/memory.h"
 #include "base/str.h"
+#include <stdio.h>
 #include <string.h>
 
 enum { FILE_MAX = 1 << 30 };
@@ -64,13 +65,19 @@ bool starts_write_into(const char *folder, const char *name, const void *data, s
            file_write(path, data, size);
 }
 
-// Copies a file, unless it is there already.
-static bool copy_into(const char *folder, const char *from, const char *name) {
-    char path[PATH_CAP], there[PATH_CAP];
+// Copies a file that the effect reads, unless it is there already. Presets go with the effect's new
+// name.
+static bool copy_into(const char *folder, const roil_input *from, const char *old,
+                      const char *effect) {
+    static const char presets[] = ".presets/";
+    char name[PATH_CAP], there[PATH_CAP];
     void *data, *other = NULL;
-    size_t size, held;
-    if (!path_join(path, from, name) || !path_join(there, folder, name)) return false;
-    if (!file_read(path, FILE_MAX, &data, &size)) return false;
+    size_t size, held, stem = strlen(old) - strlen(".lua");
+    bool preset = strncmp(from->name, old, stem) == 0 &&
+                  strncmp(from->name + stem, presets, sizeof presets - 1) == 0;
+    snprintf(name, sizeof name, "%s%s", preset ? effect : "", from->name + (preset ? stem : 0));
+    if (!path_join(there, folder, name)) return false;
+    if (!file_read(from->path, FILE_MAX, &data, &size)) return false;
     bool done = !file_exists(there)
                     ? starts_write_into(folder, name, data, size)
                     : file_read(there, FILE_MAX, &other, &held) &&
@@ -82,12 +89,12 @@ static bool copy_into(const char *folder, const char *from, const char *name) {
 }
 
 // Writes the effect with the commands in its comments as they are in its new place.
-static bool write_effect(const char *file, const char *folder, const char *name) {
+static bool write_effect(const roil_input *from, const char *folder, const char *name) {
     void *source;
     size_t size;
-    if (!file_read(file, FILE_MAX, &source, &size)) return false;
+    if (!file_read(from->path, FILE_MAX, &source, &size)) return false;
     strbuf out = {0}, old = {0}, path = {0};
-    strbuf_add(&old, "effects/%s", path_name(file)); // as in effects/pyro_campfire.lua
+    strbuf_add(&old, "effects/%s", from->name); // as in effects/pyro_campfire.lua
     strbuf_add(&path, "%s.lua", name);
     const char *at = source;
     for (const char *next; (next = strstr(at, old.text)); at = next + old.length) {
@@ -104,16 +111,20 @@ static bool write_effect(const char *file, const char *folder, const char *name)
 }
 
 bool starts_write(roil *r, const char *file, const char *folder, const char *name, size_t *copied) {
-    char from[PATH_CAP];
-    app_files files = {0};
-    path_folder(from, file);
-    bool done = app_collect_files(r, file, &files);
+    roil_inputs *in = roil_collect(r, file);
+    bool done = in != NULL;
+    const roil_input *own = NULL;
     *copied = 0;
-    for (size_t i = 0; done && i < files.count; i++) {
-        if (strcmp(files.paths[i], path_name(file)) == 0) continue;
-        done = copy_into(folder, from, files.paths[i]);
+    for (size_t i = 0; done && i < in->count; i++) {
+        const roil_input *one = &in->files[i];
+        if (strcmp(one->name, in->effect) == 0) {
+            own = one;
+            continue;
+        }
+        done = copy_into(folder, one, in->effect, name);
         *copied += done;
     }
-    app_free_files(&files);
-    return done && write_effect(file, folder, name);
+    done = done && own && write_effect(own, folder, name);
+    roil_free_inputs(in);
+    return done;
 }

@@ -30,7 +30,7 @@ static void open_edits(live *l, roil_edits *edits, const char *control) {
     write_back_close(l);
     size_t count = edits ? roil_edits_list(edits, NULL, 0) : 0;
     if (count == 0) {
-        live_notice(l, edits ? "Nothing was changed" : roil_error());
+        live_notice(l, "%s", edits ? "Nothing was changed" : roil_error());
         roil_edits_free(edits);
         return;
     }

@@ -1,4 +1,5 @@
 #include "base/error.h"
+#include "base/alias.h"
 #include <stdarg.h>
 #include <stdatomic.h>
 #include <stdio.h>
@@ -16,6 +17,7 @@ bool err_set(const char *format, ...) {
     va_start(args, format);
     vsnprintf(text, sizeof text, format, args);
     va_end(args);
+    alias_hide(text, sizeof text);
     memcpy(message, text, strlen(text) + 1);
     return false;
 }
@@ -26,6 +28,7 @@ bool err_prefix(const char *format, ...) {
     va_start(args, format);
     vsnprintf(text, MESSAGE_CAP, format, args);
     va_end(args);
+    alias_hide(text, MESSAGE_CAP);
     size_t length = strlen(text);
     memcpy(text + length, message, strlen(message) + 1);
     text[MESSAGE_CAP - 1] = '\0';

@@ -76,7 +76,10 @@ bool path_too_long(const char *path); // sets a message; always returns false
 bool path_join(char out[PATH_CAP], const char *folder, const char *name); // absolute name wins
 void path_folder(char out[PATH_CAP], const char *path); // "a/b.c" -> "a", "b.c" -> "."
 const char *path_name(const char *path);                // "a/b.c" -> "b.c"
-const char *path_extension(const char *path);           // "a/b.tar.gz" -> "gz", "" if none
+// Returns the name of an effect's file or bundle, and how long it is without its ending:
+// "a/fire.lua" -> "fire.lua", 4.
+const char *path_stem(const char *path, int *length);
+const char *path_extension(const char *path); // "a/b.tar.gz" -> "gz", "" if none
 
 // Joins `name` to `root` and requires the result, symbolic links followed, to lie inside `root`.
 // The file itself need not exist; a wildcard in the last component is allowed.

@@ -1,4 +1,5 @@
 #include "base/log.h"
+#include "base/alias.h"
 #include "base/str.h"
 #include <pthread.h>
 #include <stdarg.h>
@@ -52,6 +53,7 @@ void log_write(log_level level, const char *format, ...) {
     va_start(args, format);
     vsnprintf(text, sizeof text, format, args);
     va_end(args);
+    alias_hide(text, sizeof text);
     str_make_printable(text);
     pthread_mutex_lock(&lock);
     if (target)

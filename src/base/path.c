@@ -39,6 +39,15 @@ const char *path_name(const char *path) {
     return slash ? slash + 1 : path;
 }
 
+const char *path_stem(const char *path, int *length) {
+    const char *name = path_name(path);
+    size_t whole = strlen(name), ending = 0;
+    if (str_ends_with(name, ".lua")) ending = strlen(".lua");
+    if (str_ends_with(name, ".roil")) ending = strlen(".roil");
+    *length = (int)(whole - ending);
+    return name;
+}
+
 const char *path_extension(const char *path) {
     const char *name = path_name(path), *dot = strrchr(name, '.');
     return dot && dot != name ? dot + 1 : "";

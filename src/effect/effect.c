@@ -33,6 +33,7 @@ effect *effect_create(const effect_desc *desc) {
     e->seconds = desc->seconds > 0 ? desc->seconds : TIME_LIMIT_LOAD_SECONDS;
     e->file = arena_string(&e->memory, desc->file);
     e->inside = desc->inside ? arena_string(&e->memory, desc->inside) : NULL;
+    e->bundle = desc->bundle ? arena_string(&e->memory, desc->bundle) : NULL;
     e->roots[e->root_count++] = arena_string(&e->memory, folder);
     for (size_t i = 0; i < desc->asset_count; i++)
         e->roots[e->root_count++] = arena_string(&e->memory, desc->assets[i]);
@@ -148,6 +149,14 @@ const char *effect_inside(const effect *e) {
 const char *effect_file(const effect *e) {
     return e->file;
 }
+
+const char *effect_source(const effect *e) {
+    return e->bundle ? e->bundle : e->file;
+}
+
+const char *effect_bundle(const effect *e) {
+    return e->bundle;
+}
 scene *effect_scene(effect *e) {
     return &e->scene;
 }
@@ -156,6 +165,12 @@ pass_host *effect_pass_host(effect *e) {
 }
 const char *effect_name(const effect *e) {
     return e->name;
+}
+const char *effect_author(const effect *e) {
+    return e->author;
+}
+const char *effect_licence(const effect *e) {
+    return e->licence;
 }
 double effect_fps(const effect *e) {
     return e->fps;
@@ -184,6 +199,10 @@ shader_library *effect_library(effect *e) {
 
 void effect_set_name(effect *e, const char *name) {
     e->name = arena_string(&e->memory, name);
+}
+void effect_set_author(effect *e, const char *author, const char *licence) {
+    e->author = author ? arena_string(&e->memory, author) : NULL;
+    e->licence = licence ? arena_string(&e->memory, licence) : NULL;
 }
 void effect_set_seed(effect *e, uint32_t seed) {
     e->seed = seed;

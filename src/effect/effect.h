@@ -31,6 +31,7 @@ typedef struct effect_desc {
     gpu *device;        // NULL: check only
     const char *file;   // the effect's .lua file
     const char *inside; // folder that it must lie in when it is opened; NULL: its user named it
+    const char *bundle; // what it was unpacked from, as its user named it; NULL: it is no bundle's
     const char *const *assets; // folders that it may read besides its own
     size_t asset_count;        // up to EFFECT_MAX_ASSETS
     const char *project;       // the file that names some of them, which is watched; NULL: none
@@ -64,6 +65,8 @@ size_t effect_roots(const effect *e, const char *const **out); // that, and thos
 // Returns the folder, in which whoever reads it must stay. NULL with a message.
 const char *effect_find_file(effect *e, const char *name, char path[4096]);
 const char *effect_file(const effect *e);
+const char *effect_source(const effect *e); // what its user named: its bundle, else its file
+const char *effect_bundle(const effect *e); // effect_desc.bundle
 const char *effect_inside(const effect *e); // effect_desc.inside
 double effect_seconds(const effect *e);     // that a load may take
 bool effect_draws(const effect *e);         // false: it is only checked
@@ -71,6 +74,7 @@ scene *effect_scene(effect *e);
 pass_host *effect_pass_host(effect *e);
 
 void effect_set_name(effect *e, const char *name);
+void effect_set_author(effect *e, const char *author, const char *licence);       // NULL: not said
 bool effect_set_timeline(effect *e, double fps, uint32_t frames, uint32_t first); // > 0
 void effect_set_seed(effect *e, uint32_t seed);
 
@@ -292,6 +296,8 @@ void effect_mark_structural(effect *e, size_t param);
 // ---- asking -----------------------------------------------------------------------------------
 
 const char *effect_name(const effect *e);
+const char *effect_author(const effect *e); // NULL: not said
+const char *effect_licence(const effect *e);
 double effect_fps(const effect *e);
 uint32_t effect_frames(const effect *e);
 uint32_t effect_first_frame(const effect *e);

@@ -142,10 +142,10 @@ typedef struct effect_given { // by a host
 struct effect {
     arena memory;
     gpu *device;
-    const char *file, *name;
-    const char *roots[1 + EFFECT_MAX_ASSETS]; // folders that it may read, its own first
+    const char *file, *name, *author, *licence; // the last two NULL: not said
+    const char *roots[1 + EFFECT_MAX_ASSETS];   // folders that it may read, its own first
     size_t root_count;
-    const char *inside;                    // effect_desc
+    const char *inside, *bundle;           // effect_desc
     shader_library *library, *own_library; // the latter NULL when it is shared
     scene scene;
     graph *graph;

@@ -23,7 +23,7 @@ void recipe_write(const effect *e, double frame, uint32_t width, uint32_t height
         if (c->moved) strbuf_add(&settings, "%s=%s\n", c->name, effect_control_setting(c));
     }
     out[0] = (png_text){"Software", "roil " ROIL_VERSION};
-    out[1] = (png_text){key_effect, effect_file(e)};
+    out[1] = (png_text){key_effect, effect_source(e)};
     out[2] = (png_text){key_frame, arena_format(memory, "%.17g", frame)};
     out[3] = (png_text){key_size, arena_format(memory, "%ux%u", width, height)};
     out[4] = (png_text){key_settings, arena_string(memory, strbuf_text(&settings))};
@@ -44,6 +44,10 @@ bool recipe_is_plain(const char *text) {
     return true;
 }
 
+bool recipe_is_effect(const char *text) {
+    return recipe_is_plain(text) && (str_ends_with(text, ".lua") || str_ends_with(text, ".roil"));
+}
+
 bool recipe_stays_below(const char *path) {
     if (path[0] == '/') return false;
     for (const char *part = path; part; part = strchr(part, '/')) {
@@ -54,8 +58,8 @@ bool recipe_stays_below(const char *path) {
 }
 
 static bool read_file(const char *text, arena *memory, recipe *out) {
-    if (!str_ends_with(text, ".lua") || !recipe_is_plain(text) || strlen(text) >= PATH_CAP)
-        return err_set("the recipe's effect is no .lua file");
+    if (!recipe_is_effect(text) || strlen(text) >= PATH_CAP)
+        return err_set("the recipe's effect is no .lua file and no bundle");
     out->file = recipe_stays_below(text) ? arena_string(memory, text) : NULL;
     return true;
 }

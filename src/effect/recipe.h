@@ -19,5 +19,6 @@ void recipe_write(const effect *e, double frame, uint32_t width, uint32_t height
 bool recipe_read(const png_text *texts, size_t count, arena *memory, recipe *out);
 
 bool recipe_is_plain(const char *text);    // one line, without what terminals obey
+bool recipe_is_effect(const char *text);   // can be the file of an effect, or a bundle
 bool recipe_stays_below(const char *path); // as text: it does not leave the current folder
 bool recipe_is_name(const char *text);     // can be that of a control

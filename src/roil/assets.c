@@ -10,6 +10,7 @@
 #include <string.h>
 
 enum { PROJECT_MAX = 64 << 10 };
+static const char project_name[] = "roil.json";
 
 static bool refuse_more(void) {
     return err_set("more than %d folders of assets; put what belongs together into one",
@@ -47,7 +48,7 @@ static bool find_project(const char *file, char out[PATH_CAP]) {
     path_folder(folder, file);
     if (!path_split_inside(real, rest, folder, folder)) return false;
     for (;;) {
-        if (path_join(out, real, "roil.json") && file_exists(out)) return true;
+        if (path_join(out, real, project_name) && file_exists(out)) return true;
         char *slash = strrchr(real, '/');
         if (!slash || slash == real) return false;
         *slash = '\0';
@@ -96,11 +97,17 @@ static bool read_project(const char *path, roil_assets *out) {
     return done;
 }
 
-bool roil_find_assets(const roil *r, const char *file, roil_assets *out) {
+bool roil_is_project(const char *file) {
+    return strcmp(path_name(file), project_name) == 0;
+}
+
+bool roil_find_assets(const roil *r, const roil_origin *origin, roil_assets *out) {
     char path[PATH_CAP];
-    *out = (roil_assets){.count = r->asset_count};
+    *out = (roil_assets){0};
+    if (origin->bundle) return true; // it holds all
+    out->count = r->asset_count;
     for (size_t i = 0; i < r->asset_count; i++) out->folders[i] = r->assets[i];
-    if (!find_project(file, path)) return true;
+    if (!find_project(origin->file, path)) return true;
     out->project = arena_string(&out->memory, path);
     return read_project(path, out);
 }

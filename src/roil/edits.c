@@ -388,6 +388,7 @@ static bool is_overruled(roil_effect *e, const effect_control *c) {
 }
 
 roil_edits *edits_begin(const roil_effect *e) {
+    if (!roil_may_write(e)) return NULL;
     roil_edits *x = mem_alloc(sizeof *x);
     x->root = arena_string(&x->memory, effect_root(e->effect)); // which may end before
     return x;
@@ -404,6 +405,7 @@ void edits_end(roil_edits *x) {
 // `one`: NULL for all that were moved.
 static roil_edits *create_edits(roil_effect *e, const effect_control *one, bool pins) {
     roil_edits *x = edits_begin(e);
+    if (!x) return NULL;
     x->pins = pins;
     for (size_t i = 0; i < effect_control_count(e->effect); i++) {
         const effect_control *c = effect_get_control(e->effect, i);

@@ -28,7 +28,7 @@ struct roil_edits {
     size_t count, capacity;
 };
 
-roil_edits *edits_begin(const roil_effect *e); // of nothing yet
+roil_edits *edits_begin(const roil_effect *e); // of nothing yet; NULL with a message
 void edits_end(roil_edits *x);                 // lists what was replaced, line by line
 // Reads a file of the effect, once. NULL with a message.
 edited_file *edits_open_file(roil_edits *x, const char *path);

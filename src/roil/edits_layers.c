@@ -213,6 +213,7 @@ roil_edits *roil_edits_create_layer(roil_effect *e, const char *layers, size_t l
         return NULL;
     }
     roil_edits *x = edits_begin(e);
+    if (!x) return NULL;
     if (!change(x, &l, layer - 1, how)) {
         roil_edit *edit = edits_add(x);
         edit->controls = arena_string(&x->memory, layers);

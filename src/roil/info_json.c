@@ -2,16 +2,19 @@
 #include "base/error.h"
 #include "base/memory.h"
 #include "roil/info.h"
+#include "roil/sheet.h"
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-static char *tree_finish(json_t *root) {
+char *info_finish_json(json_t *root) {
     char *text = json_dumps(root, JSON_INDENT(1) | JSON_REAL_PRECISION(7));
     json_decref(root);
     if (!text) err_set("the reference cannot be written as JSON");
-    return text;
+    char *own = text ? mem_copy(text, strlen(text) + 1) : NULL; // from the host's allocator
+    free(text);
+    return own;
 }
 
 // ---- values -----------------------------------------------------------------------------------
@@ -195,7 +198,7 @@ char *roil_info_json(roil *r, const char *list, const char *name) {
         roil_free(text);
         return roil_leave_text(NULL);
     }
-    return roil_leave_text(tree_finish(root));
+    return roil_leave_text(info_finish_json(root));
 }
 
 // ---- devices, one effect ----------------------------------------------------------------------
@@ -215,7 +218,7 @@ char *roil_info_devices_json(void) {
         json_array_append_new(all, one);
     }
     return roil_leave_text(
-        tree_finish(json_pack("{s:s, s:o}", "roil", roil_version(), "devices", all)));
+        info_finish_json(json_pack("{s:s, s:o}", "roil", roil_version(), "devices", all)));
 }
 
 static json_t *control_json(roil_effect *e, size_t index) {
@@ -246,14 +249,22 @@ static json_t *control_json(roil_effect *e, size_t index) {
     return out;
 }
 
+json_t *info_effect_json(const roil_effect_info *info) {
+    json_t *out =
+        json_pack("{s:o, s:f, s:i, s:i}", "name", sheet_text(info->name), "fps", info->fps,
+                  "first_frame", (int)info->first_frame, "frames", (int)info->frames);
+    if (info->author) json_object_set_new(out, "author", sheet_text(info->author));
+    if (info->licence) json_object_set_new(out, "licence", sheet_text(info->licence));
+    return out;
+}
+
 char *roil_info_params_json(roil_effect *e) {
     mem_enter();
     roil_effect_info info = roil_get_info(e);
     json_t *controls = json_array();
     for (size_t i = 0; i < roil_control_count(e); i++)
         json_array_append_new(controls, control_json(e, i));
-    return roil_leave_text(tree_finish(
-        json_pack("{s:s, s:{s:s, s:f, s:i, s:i}, s:o}", "roil", roil_version(), "effect", "name",
-                  info.name, "fps", info.fps, "first_frame", (int)info.first_frame, "frames",
-                  (int)info.frames, "controls", controls)));
+    return roil_leave_text(info_finish_json(
+        json_pack("{s:s, s:o, s:o}", "roil", roil_version(), "effect", info_effect_json(&info),
+                  "controls", controls)));
 }

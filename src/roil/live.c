@@ -178,6 +178,7 @@ static bool take_over(roil_live *l, effect *made, uint32_t width, uint32_t heigh
 
 static void set_message(roil_live *l, char *message) {
     mem_free(l->message);
+    mem_free(l->file);
     l->message = message;
 }
 
@@ -221,10 +222,10 @@ static void on_settled(void *user) { // files saved together make one build
 
 static bool make_library(roil_live *l) {
     char folder[PATH_CAP], cache[PATH_CAP];
-    path_folder(folder, l->file);
+    path_folder(folder, l->origin.file);
     bool cached = l->owner->cache && path_join(cache, l->owner->cache, "spirv");
     roil_assets assets; // those of a project file that is wrong are read once it is mended
-    if (!roil_find_assets(l->owner, l->file, &assets)) assets.count = 0;
+    if (!roil_find_assets(l->owner, &l->origin, &assets)) assets.count = 0;
     l->library = shader_library_create(&(shader_library_desc){
         .shader_root = l->owner->shaders,
         .effect_root = folder,
@@ -262,7 +263,6 @@ static void free_live(roil_live *l) { // its threads have ended
     pthread_mutex_destroy(&l->lock);
     mem_free(l->settings);
     mem_free(l->message);
-    mem_free(l->file);
     mem_free(l);
 }
 
@@ -281,8 +281,10 @@ static roil_live *create_live(roil *r, const roil_live_desc *desc) {
         l->presets[l->preset_count++] = copy_text(desc->presets[i]);
     for (size_t i = 0; i < desc->setting_count; i++)
         put_setting(l, desc->settings[i].name, desc->settings[i].value, NULL);
-    l->watch = make_library(l) ? watch_create(&(watch_desc){on_changed, on_settled, l}) : NULL;
-    const char *file = l->file;
+    bool found = roil_find_origin(NULL, l->file, &l->origin);
+    l->watch =
+        found && make_library(l) ? watch_create(&(watch_desc){on_changed, on_settled, l}) : NULL;
+    const char *file = l->origin.file;
     if (!l->watch || !watch_set(l->watch, &file, 1)) {
         free_live(l);
         return NULL;

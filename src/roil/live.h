@@ -31,7 +31,8 @@ typedef struct live_builder { // a thread that builds effects
 
 struct roil_live {
     roil *owner;
-    char *file, **presets;
+    char *file, **presets; // as the user named it
+    roil_origin origin;    // where it is
     size_t preset_count;
     void (*wake)(void *user);
     void *user;

@@ -86,9 +86,9 @@ static bool read_presets(const roil_live *l, roil_preset **out, file_set *files)
     for (size_t i = 0; i < l->preset_count; i++) {
         char path[PATH_CAP];
         const char *file = path;
-        if (!roil_preset_path(path, l->file, l->presets[i])) return false;
+        if (!roil_preset_path(path, l->origin.file, l->presets[i])) return false;
         add_files(files, &file, 1);
-        out[i] = roil_read_preset(l->owner, l->file, l->presets[i]);
+        out[i] = roil_read_preset(l->owner, l->origin.file, l->presets[i]);
         if (!out[i]) return false;
     }
     return true;
@@ -140,8 +140,8 @@ static effect *builder_load(roil_live *l, const order *o, file_set *files) {
     const char *const *read;
     roil_assets assets;
     effect *e = NULL;
-    if (roil_find_assets(r, l->file, &assets)) {
-        effect_desc desc = roil_effect_desc(r, l->file, &assets, o->settings, o->setting_count);
+    if (roil_find_assets(r, &l->origin, &assets)) {
+        effect_desc desc = roil_effect_desc(r, &l->origin, &assets, o->settings, o->setting_count);
         desc.library = l->library;
         desc.contents = l->contents;
         e = effect_create(&desc);
@@ -222,7 +222,8 @@ void live_want(roil_live *l) {
 static bool wait_for_content(roil_live *l) {
     struct stat info;
     double end = l->latest + EMPTY_SECONDS;
-    if (clock_seconds() >= end || stat(l->file, &info) != 0 || info.st_size > 0) return false;
+    if (clock_seconds() >= end || stat(l->origin.file, &info) != 0 || info.st_size > 0)
+        return false;
     struct timespec until = {.tv_sec = (time_t)end};
     until.tv_nsec = (long)((end - (double)until.tv_sec) * 1e9);
     pthread_cond_timedwait(&l->news, &l->lock, &until);
@@ -303,5 +304,6 @@ bool live_start(roil_live *l) {
     if (!failed) return true;
     l->builder = before;
     mem_free(b);
-    return err_set("%s: no thread can be made that builds it: %s", l->file, strerror(failed));
+    return err_set("%s: no thread can be made that builds it: %s", l->origin.file,
+                   strerror(failed));
 }

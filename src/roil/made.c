@@ -34,12 +34,11 @@ static bool hash_file(int file, uint64_t size, hash128 *out) {
     return done;
 }
 
-// Opens a file that the effect has read, in the folders that it may read and those of the program;
-// no link that was put there meanwhile leads out. -1: there is none.
-static int open_input(const roil_effect *e, const char *path, bool own, size_t *size) {
+int roil_open_input(const roil_effect *e, const char *path, size_t *size) {
     const char *inside = effect_inside(e->effect);
-    if (own) return file_open_inside(inside, path, SIZE_MAX, size);
-    const char *const *roots;
+    const char *const *roots, *const *files;
+    effect_files(e->effect, &files);
+    if (path == files[0]) return file_open_inside(inside, path, SIZE_MAX, size); // its own
     size_t count = effect_roots(e->effect, &roots);
     for (size_t i = 0; i < count; i++) {
         int file = file_open_inside(i == 0 && inside ? inside : roots[i], path, SIZE_MAX, size);
@@ -60,7 +59,7 @@ static const char *hash_inputs(roil_effect *e) {
     hash128 *hashes = mem_alloc(count * sizeof *hashes);
     for (size_t i = 0; i < count; i++) {
         size_t size;
-        int file = open_input(e, files[i], i == 0, &size); // the first is its own
+        int file = roil_is_project(files[i]) ? -1 : roil_open_input(e, files[i], &size);
         if (file < 0) continue;
         found += hash_file(file, size, &hashes[found]);
         close(file);
@@ -84,7 +83,7 @@ char *roil_describe(roil_effect *e, const roil_making *how) {
         json_array_append_new(options, json_string(how->options[i]));
     json_t *root = json_pack(
         "{s:i, s:s, s:s, s:s, s:f, s:[f,f,f], s:[i,i], s:o, s:o, s:s, s:s, s:s}", "roil-recipe", 1,
-        "roil", ROIL_VERSION, "kind", how->kind, "effect", effect_file(e->effect), "frame",
+        "roil", ROIL_VERSION, "kind", how->kind, "effect", effect_source(e->effect), "frame",
         e->shown, "frames", how->first, how->last, how->step, "size", (int)e->width, (int)e->height,
         "settings", settings, "options", options, "device", roil_device_name(e->owner), "driver",
         roil_device_driver(e->owner), "inputs", hash_inputs(e));
@@ -208,8 +207,8 @@ static bool take_all(owned_made *own, json_t *root) {
     m->device = take_text(own, root, "device");
     m->driver = take_text(own, root, "driver");
     m->inputs = take_text(own, root, "inputs");
-    if (!file || !str_ends_with(file, ".lua") || !m->kind || !m->version || !m->device ||
-        !m->driver || !m->inputs)
+    if (!file || !recipe_is_effect(file) || !m->kind || !m->version || !m->device || !m->driver ||
+        !m->inputs)
         return false;
     m->effect = recipe_stays_below(file) ? file : NULL;
     return take_frames(m, root) && take_settings(own, root) && take_options(own, root);

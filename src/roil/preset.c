@@ -36,7 +36,10 @@ static bool preset_path(char out[PATH_CAP], const char *effect_file, const char 
 size_t roil_presets(const char *effect_file, char (*names)[64], size_t capacity) {
     char pattern[PATH_CAP];
     file_list files;
-    if (!preset_path(pattern, effect_file, "*") || !file_glob(pattern, &files)) return 0;
+    roil_origin origin;
+    if (!roil_find_origin(NULL, effect_file, &origin) || !preset_path(pattern, origin.file, "*") ||
+        !file_glob(pattern, &files))
+        return 0;
     size_t count = 0;
     for (size_t i = 0; i < files.count; i++) {
         const char *name = path_name(files.paths[i]);
@@ -83,7 +86,8 @@ bool roil_preset_path(char out[PATH_CAP], const char *effect_file, const char *p
     if (!is_name(preset, strlen(preset)))
         return err_set("preset '%.64s' is not a name (letters, digits, _ and -), nor a .lua file",
                        preset);
-    return preset_path(out, effect_file, preset);
+    roil_origin origin;
+    return roil_find_origin(NULL, effect_file, &origin) && preset_path(out, origin.file, preset);
 }
 
 static roil_preset *read_preset(roil *r, const char *effect_file, const char *preset) {
@@ -94,8 +98,9 @@ static roil_preset *read_preset(roil *r, const char *effect_file, const char *pr
         refuse_preset(effect_file, preset);
         return NULL;
     }
-    char root[PATH_CAP];
-    path_folder(root, effect_file);
+    char folder[PATH_CAP], root[PATH_CAP];
+    path_folder(folder, path);
+    path_folder(root, folder); // of the effect
     owned_preset *own = mem_alloc(sizeof *own);
     effect_setting *settings;
     size_t count;
@@ -147,7 +152,8 @@ bool roil_write_preset(roil_effect *e, const char *name) {
     char path[PATH_CAP], root[PATH_CAP];
     if (!is_name(name, strlen(name)))
         return mem_leave(err_set("preset '%.64s' is not a name (letters, digits, _ and -)", name));
-    if (!preset_path(path, effect_file(e->effect), name)) return mem_leave(false);
+    if (!roil_may_write(e) || !preset_path(path, effect_file(e->effect), name))
+        return mem_leave(false);
     path_folder(root, effect_file(e->effect));
     strbuf text = {0};
     print_preset(e, name, &text);

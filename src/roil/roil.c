@@ -127,6 +127,7 @@ static roil *create(const roil_desc *desc) {
         return NULL;
     if (desc->reader && !isolate_set_reader(desc->reader)) return NULL;
     roil *r = mem_alloc(sizeof *r);
+    roil_count_users(1);
     r->home = mem_copy(home, strlen(home) + 1);
     r->shaders = joined(home, "shaders");
     r->scripts = joined(home, "scripts");
@@ -163,6 +164,7 @@ void roil_destroy(roil *r) {
     mem_free(r->cache);
     for (size_t i = 0; i < r->asset_count; i++) mem_free(r->assets[i]);
     mem_free(r);
+    roil_count_users(-1);
 }
 
 bool roil_can_exit(void) {
@@ -246,11 +248,13 @@ roil_effect *roil_load(roil *r, const char *file, const roil_setting *settings, 
     return roil_load_inside(r, NULL, file, settings, count);
 }
 
-effect_desc roil_effect_desc(const roil *r, const char *file, const roil_assets *assets,
+effect_desc roil_effect_desc(const roil *r, const roil_origin *origin, const roil_assets *assets,
                              const effect_setting *settings, size_t count) {
     return (effect_desc){
         .device = r->device,
-        .file = file,
+        .file = origin->file,
+        .inside = origin->inside,
+        .bundle = origin->bundle,
         .assets = assets->folders,
         .asset_count = assets->count,
         .project = assets->project,
@@ -268,15 +272,16 @@ effect_desc roil_effect_desc(const roil *r, const char *file, const roil_assets 
 
 static roil_effect *load(roil *r, const char *folder, const char *file,
                          const roil_setting *settings, size_t count) {
+    roil_origin origin;
+    if (!roil_find_origin(folder, file, &origin)) return NULL;
     effect_setting *own = mem_alloc(count * sizeof *own);
     for (size_t i = 0; i < count; i++)
         own[i] = (effect_setting){.name = settings[i].name, .text = settings[i].value};
     roil_effect *e = mem_alloc(sizeof *e);
     e->owner = r;
     roil_assets assets;
-    if (roil_find_assets(r, file, &assets)) {
-        effect_desc desc = roil_effect_desc(r, file, &assets, own, count);
-        desc.inside = folder;
+    if (roil_find_assets(r, &origin, &assets)) {
+        effect_desc desc = roil_effect_desc(r, &origin, &assets, own, count);
         e->effect = effect_create(&desc);
     }
     arena_free(&assets.memory);
@@ -324,6 +329,8 @@ bool roil_check(roil_effect *e) {
 roil_effect_info roil_get_info(const roil_effect *e) {
     return (roil_effect_info){
         .name = effect_name(e->effect),
+        .author = effect_author(e->effect),
+        .licence = effect_licence(e->effect),
         .fps = effect_fps(e->effect),
         .first_frame = effect_first_frame(e->effect),
         .frames = effect_frames(e->effect),

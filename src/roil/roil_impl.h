@@ -72,8 +72,22 @@ typedef struct roil_assets {
 } roil_assets;
 // Takes those of roil_desc and the environment into `r`. False with a message.
 bool roil_take_assets(roil *r, const roil_desc *desc);
-// False with a message: the file "roil.json" is wrong. arena_free(&out->memory) in either case.
-bool roil_find_assets(const roil *r, const char *file, roil_assets *out);
+bool roil_is_project(const char *file); // "roil.json"
+
+// Where the file of an effect is that its user named. A bundle is unpacked into a folder of the
+// process, which is removed with the last `roil`.
+typedef struct roil_origin {            // strings live as long as that
+    const char *file, *inside, *bundle; // as those of effect_desc
+} roil_origin;
+// `inside`: the folder that `file` must lie in; NULL: anywhere. False with a message.
+bool roil_find_origin(const char *inside, const char *file, roil_origin *out);
+void roil_count_users(int change); // of the folders: 1 or -1 with each `roil`
+// False with a message: the file "roil.json" is wrong. A bundle has no assets. Call
+// arena_free(&out->memory) in either case.
+bool roil_find_assets(const roil *r, const roil_origin *origin, roil_assets *out);
+// Opens a file that an effect has read, in the folders that it may read and those of the program;
+// no link that was put there meanwhile leads out. -1: there is none.
+int roil_open_input(const roil_effect *e, const char *path, size_t *size);
 
 typedef struct roil_making {    // of an output, besides the effect, its settings and its size
     const char *kind;           // "picture", "film", "volume"
@@ -103,8 +117,9 @@ char *roil_leave_text(char *text); // the same of a text, which is returned
 
 time_limit roil_time_limit(const roil *r); // a new limit for a load
 // What an effect is created with, by the options of `r`; the other members are zero.
-effect_desc roil_effect_desc(const roil *r, const char *file, const roil_assets *assets,
+effect_desc roil_effect_desc(const roil *r, const roil_origin *origin, const roil_assets *assets,
                              const effect_setting *settings, size_t count);
+bool roil_may_write(const roil_effect *e); // false with a message: it is a bundle's
 
 void roil_free_view(roil *r);
 void roil_free_templates(roil_effect *e); // after the effect itself

@@ -3,9 +3,22 @@
 // and events.
 #include "base/memory.h"
 #include "script/binding.h"
+#include <ctype.h>
 #include <string.h>
 
 static const char who[] = "effect";
+
+// Takes a line of text, which others print as it is.
+static const char *get_line(lua_State *L, const char *key) {
+    enum { LINE_MOST = 200 };
+    const char *text = value_get_string(L, 1, who, key);
+    if (!text) return NULL;
+    bool plain = text[0] && strlen(text) <= LINE_MOST;
+    for (const char *c = text; *c; c++) plain &= !iscntrl((unsigned char)*c);
+    if (!plain)
+        vm_error(L, "effect: '%s' takes one line of up to %d bytes, as \"MIT\"", key, LINE_MOST);
+    return text;
+}
 
 static int l_effect(lua_State *L) {
     script *s = script_of(L);
@@ -18,6 +31,7 @@ static int l_effect(lua_State *L) {
     uint32_t first = value_get_count(L, 1, who, "first", effect_first_frame(s->effect));
     uint32_t seed = value_get_count(L, 1, who, "seed", 0);
     if (name) effect_set_name(s->effect, name);
+    effect_set_author(s->effect, get_line(L, "author"), get_line(L, "licence"));
     if (!effect_set_timeline(s->effect, fps, frames, first)) script_raise(L);
     effect_set_seed(s->effect, seed);
     vm_set_seed(L, s->seed = seed);

@@ -79,6 +79,8 @@ static const script_object reference_words[] = {
      "declares the effect, once in a file. What it shows is assigned to its members",
      .keys = KEYS(
         KEY("name", "the file's", "shown in reports"),
+        KEY("author", NULL, "who made it, in a line: for `roil info` and bundles"),
+        KEY("licence", NULL, "under which others may use it, in a line: \"MIT\", \"CC BY 4.0\""),
         KEY("fps", "24 (0, 1000] frames/s", "frames a second"),
         KEY("frames", "1 [1, 1000000]", "length"),
         KEY("first", "1", "number of the first frame, whose time is 0"),

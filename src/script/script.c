@@ -167,19 +167,25 @@ static int open_bindings(lua_State *L) {
     return 0;
 }
 
-// Folder of the effect as its user wrote it, with a '/' at the end; "" for the current one.
-static void shown_folder(const char *file, char out[PATH_CAP]) {
+// Folder of the effect as its user wrote it, with a '/' at the end; "" for the current one. Of a
+// bundle its name.
+static void shown_folder(const effect *e, char out[PATH_CAP]) {
+    const char *file = effect_file(e), *bundle = effect_bundle(e);
     size_t length = (size_t)(path_name(file) - file);
-    snprintf(out, PATH_CAP, "%.*s", (int)length, file);
+    if (bundle)
+        snprintf(out, PATH_CAP, "%s/", bundle);
+    else
+        snprintf(out, PATH_CAP, "%.*s", (int)length, file);
 }
 
 static bool script_run_file(script *s, const char *prelude_folder) {
-    char prelude[PATH_CAP];
-    const char *file = effect_file(s->effect);
+    char prelude[PATH_CAP], name[PATH_CAP];
+    const char *file = effect_file(s->effect), *bundle = effect_bundle(s->effect), *shown = file;
+    if (bundle) shown = path_join(name, bundle, path_name(file)) ? name : bundle;
     return vm_protect(s->vm, open_bindings, NULL, s->limits.load) &&
            path_join(prelude, prelude_folder, "prelude.lua") &&
            vm_run_file(s->vm, prelude, "prelude.lua", s->limits.load, true) &&
-           vm_run_file_inside(s->vm, effect_inside(s->effect), file, s->limits.load);
+           vm_run_file_inside(s->vm, effect_inside(s->effect), file, shown, s->limits.load);
 }
 
 static bool is_complete(const script *s) {
@@ -198,7 +204,7 @@ static bool is_complete(const script *s) {
 
 bool script_load_limited(effect *e, const char *prelude_folder, const script_limits *limits) {
     char shown[PATH_CAP], library[PATH_CAP];
-    shown_folder(effect_file(e), shown);
+    shown_folder(e, shown);
     if (!path_join(library, prelude_folder, "lib")) return false;
     script *s = mem_alloc(sizeof *s);
     *s = (script){.effect = e, .loading = true, .update = LUA_NOREF, .handlers = LUA_NOREF};

@@ -301,8 +301,8 @@ static const char *format(lua_State *L, const char *first, const char *second) {
 }
 
 static const char *stem(lua_State *L, const char *path) {
-    const char *name = path_name(path);
-    int length = (int)strlen(name) - (str_ends_with(name, ".lua") ? 4 : 0);
+    int length;
+    const char *name = path_stem(path, &length);
     return keep(L, lua_pushlstring(L, name, (size_t)length));
 }
 

@@ -513,8 +513,9 @@ bool vm_run_file(vm *v, const char *path, const char *shown, uint64_t instructio
     return vm_protect(v, run_chunk, &request, instructions);
 }
 
-bool vm_run_file_inside(vm *v, const char *root, const char *path, uint64_t instructions) {
-    run_request request = {root, path, path, false};
+bool vm_run_file_inside(vm *v, const char *root, const char *path, const char *shown,
+                        uint64_t instructions) {
+    run_request request = {root, path, shown, false};
     return vm_protect(v, run_chunk, &request, instructions);
 }
 

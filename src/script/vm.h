@@ -36,7 +36,8 @@ void *vm_user(lua_State *L);
 // `prelude`: errors in its functions name the line of the effect that called them.
 bool vm_run_file(vm *v, const char *path, const char *shown, uint64_t instructions, bool prelude);
 // The same of a file that must lie in `root` when it is opened; NULL: anywhere.
-bool vm_run_file_inside(vm *v, const char *root, const char *path, uint64_t instructions);
+bool vm_run_file_inside(vm *v, const char *root, const char *path, const char *shown,
+                        uint64_t instructions);
 
 // Calls the function on the stack below `args` arguments. False with a message, and nothing is
 // pushed. A nested call uses the limit of the outer one.

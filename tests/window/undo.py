@@ -2,8 +2,9 @@
 import os
 import random
 import re
+import subprocess
 
-from lib.window import PUFF, Case, difference, main, require_tools
+from lib.window import PROGRAM, PUFF, Case, Live, difference, main, require_tools
 
 VIEW = "view"
 ACTIONS = int(os.environ.get("ROIL_SOAK") or 40)  # at random; 5000 take over an hour in software
@@ -80,6 +81,28 @@ class Undo(Case):
         live.expect("live: took over")
         live.wait_until(lambda: "look/reset" not in live.widgets(), "the script's word")
         live.quit()
+
+    def test_a_bundle_is_shown_and_never_changed(self):
+        self.write("show/puff.lua", PUFF)
+        subprocess.run([PROGRAM, "bundle", "show/puff.lua", "-o", "puff.roil"], cwd=self.folder, env=self.environment, check=True)
+        before = sorted(os.listdir(self.folder))
+        with open(self.path("puff.roil"), "rb") as f:
+            packed = f.read()
+        live = Live(self, "puff.roil", "--size", "1200x720", "--paused")
+        self.addCleanup(live.kill)
+        live.expect("live: first frame")
+        live.tool("windowfocus", "--sync", live.window())
+        live.expect("live: shown")
+        self.slide(live, "thickness", 0.2, 0.75)
+        live.keys("w")
+        live.expect("live: notice: puff.roil is a bundle, which is never changed")
+        live.keys("ctrl+s")
+        live.expect("live: notice: .*puff.roil is a bundle, which is never changed")
+        live.quit()
+        with open(self.path("puff.roil"), "rb") as f:
+            self.assertEqual(f.read(), packed)
+        self.assertEqual([name for name in sorted(os.listdir(self.folder)) if name not in ("state", "widgets.json")],
+                         [name for name in before if name not in ("state", "widgets.json")])
 
     def test_what_was_tuned_goes_into_the_file(self):
         live = self.live()
