@@ -394,19 +394,20 @@ typedef struct roil_recipe { // how a picture was made
 roil_recipe *roil_read_recipe(const char *png); // free with roil_free_recipe; NULL: it holds none
 void roil_free_recipe(roil_recipe *r);          // NULL is allowed
 
-// Every picture, film and volume says in a line of JSON how it was made; `roil repro` makes it
-// again.
+// Every picture, film, volume and sheet says in a line of JSON how it was made; `roil repro` makes
+// it again.
 typedef struct roil_made {
-    const char *kind;    // "picture", "film", "volume"
-    const char *version; // of roil
-    const char *effect;  // as in roil_recipe
+    const char *kind;         // "picture", "film", "volume", "sheet"
+    const char *sheet, *part; // of a sheet the names of its first file and of this one; else ""
+    const char *version;      // of roil
+    const char *effect;       // as in roil_recipe
     const char *device, *driver;
     const char *inputs; // a hash of all files that the effect had read, wherever they lay
     double frame, first, last, step; // frames: of a volume those that its box was chosen by
     uint32_t width, height;
     const roil_setting *settings;
     size_t setting_count;
-    const char *const *options; // of `roil render` or `roil export vdb`, "--warmup=3"
+    const char *const *options; // of `roil render`, `roil export vdb` or `sheet`, "--warmup=3"
     size_t option_count;
 } roil_made;
 roil_made *roil_read_made(const char *file); // of a stranger, too; NULL with a message

@@ -75,6 +75,8 @@ typedef struct roil_sheet_options {
     double loop;        // seconds after which it repeats; 0: it does not
     uint32_t count;     // cells that are used; 0: all
     const char *page;   // .html file that plays the sheet; NULL: none
+    const char *const *made; // options of the command that makes it, "--cell=64", ending with NULL;
+                             // NULL: none. Its files hold them
     const char *const *notes; // lines for the description, such as how a loop was made
     size_t note_count;
 } roil_sheet_options;

@@ -99,6 +99,18 @@ static void add_export(job *j, const char *effect) {
     add(j, effect);
 }
 
+static void add_sheet(job *j, const char *effect) {
+    const roil_made *m = j->made;
+    add(j, "roil");
+    add(j, "export");
+    add(j, "sheet");
+    for (size_t i = 0; i < m->option_count; i++) add(j, m->options[i]);
+    add(j, arena_format(&j->memory, "--output=%s/%s", j->folder, m->sheet));
+    j->again = arena_format(&j->memory, "%s/%s", j->folder, m->part);
+    if (str_ends_with(m->part, ".html")) add(j, arena_format(&j->memory, "--page=%s", j->again));
+    add(j, effect);
+}
+
 // Runs the command; what it prints to the standard output is left out.
 static bool run(job *j) {
     for (size_t i = 0; i < j->made->setting_count; i++) {
@@ -172,7 +184,8 @@ static int compare(const job *j) {
         return APP_DONE;
     }
     roil_difference d;
-    bool picture = strcmp(j->made->kind, "picture") == 0;
+    bool picture = strcmp(j->made->kind, "picture") == 0 ||
+                   (strcmp(j->made->kind, "sheet") == 0 && str_ends_with(j->again, ".png"));
     if (!picture || !roil_compare(&(roil_comparison){.a = j->file, .b = j->again}, &d))
         app_print(stdout, "%s: not the same\n", j->file);
     else
@@ -247,6 +260,8 @@ static int repro(job *j) {
         fflush(stdout);
         if (strcmp(m->kind, "volume") == 0)
             add_export(j, effect);
+        else if (strcmp(m->kind, "sheet") == 0)
+            add_sheet(j, effect);
         else
             add_render(j, effect);
         status = run(j) && keep_output(j) ? compare(j) : app_fail_input();
@@ -263,8 +278,8 @@ int cmd_repro(int argc, const char **argv) {
         {"output", 'o', POPT_ARG_STRING, &j->output, 0, "keep what was made again", "FILE"},
         app_device_rows(&j->device),
         POPT_AUTOHELP POPT_TABLEEND};
-    poptContext context =
-        app_options("roil repro", argc, argv, options, "FILE.png|exr|mp4|vdb [EFFECT.lua]");
+    poptContext context = app_options("roil repro", argc, argv, options,
+                                      "FILE.png|exr|mp4|vdb|json|html [EFFECT.lua]");
     int code = poptGetNextOpt(context), status;
     j->file = poptGetArg(context);
     j->named = poptGetArg(context);

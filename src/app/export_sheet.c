@@ -31,6 +31,8 @@ typedef struct job {
     size_t shot_count, shot_capacity;
     char note[256];
     const char *notes[1];
+    arena memory;
+    const char *made[16]; // options that make it again
 } job;
 
 enum { OPTION_SET = 1, OPTION_PRESET };
@@ -137,6 +139,30 @@ static bool sheet_parse(job *j, int argc, const char **argv, poptContext *contex
         if (!take_option(j, *context, option)) return false;
     if (option < -1) return app_refuse_option(*context, options, option);
     return sheet_check_options(j, *context);
+}
+
+// Lists the options that say what is made, for the files to hold.
+static void list_options(job *j) {
+    const char *texts[][2] = {
+        {"grid", j->grid},
+        {"frames", j->frames_text},
+        {"maps", j->desc.maps},
+        {"for", j->options.engine},
+        {"light", j->desc.light},
+        {"alpha", j->options.alpha},
+        {"format", j->options.format},
+        {"source", j->desc.source},
+    };
+    size_t count = 0;
+    for (size_t i = 0; i < COUNT_OF(texts); i++)
+        if (texts[i][1])
+            j->made[count++] = arena_format(&j->memory, "--%s=%s", texts[i][0], texts[i][1]);
+    j->made[count++] = arena_format(&j->memory, "--cell=%d", j->cell);
+    j->made[count++] = arena_format(&j->memory, "--gutter=%d", j->gutter);
+    if (j->loop > 0) j->made[count++] = arena_format(&j->memory, "--loop=%.17g", j->loop);
+    if (j->crop) j->made[count++] = "--crop";
+    if (j->camera) j->made[count++] = "--camera";
+    j->options.made = j->made;
 }
 
 // ---- which frame goes where -------------------------------------------------------------------
@@ -247,6 +273,7 @@ static bool draw(const job *j, roil_effect *e, roil_sheet *s) {
 static bool export_all(void *user, roil_effect *e) {
     job *j = user;
     if (!app_can_write(j->output)) return false;
+    list_options(j);
     roil_sheet *s = roil_sheet_create(e, &j->desc);
     bool done = s && draw(j, e, s) && roil_sheet_save(s, j->output, &j->options);
     if (done) {
@@ -268,6 +295,7 @@ int export_sheet(int argc, const char **argv) {
             : app_fail(APP_BAD_USAGE, "export: %s", roil_error());
     poptFreeContext(context);
     mem_free(j.shots);
+    arena_free(&j.memory);
     app_free_frames(&j.frames);
     app_free_settings(&j.settings);
     return status;

@@ -28,7 +28,8 @@ static const app_command commands[] = {
      "write an effect as a sheet for engines, its volumes as VDB files, or a VDB sequence as raw"},
     {"bench", cmd_bench, "measure a sweep: time, memory and error over settings of effects"},
     {"tune", cmd_tune, "find the settings that are cheapest within an error, or best in a time"},
-    {"repro", cmd_repro, "make a picture, film or volume again by what it holds, and compare"},
+    {"repro", cmd_repro,
+     "make a picture, film, volume or sheet again by what it holds, and compare"},
     {"compare", cmd_compare, "tell how different two pictures are: PSNR, SSIM, FLIP"},
 };
 

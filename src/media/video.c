@@ -11,6 +11,9 @@
 #include "media/av.h"
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+#include <zlib.h>
 
 enum { SIDE_MAX = 16384, TIME_BASE_MAX = 1001000, MPEG4_QUANTISER = 3, KEY_SECONDS = 2 };
 
@@ -66,6 +69,7 @@ struct video {
     char path[PATH_CAP];
     file_draft draft;
     bool drafting; // `draft` has begun
+    char *comment; // NULL: none
     uint32_t width, height, even_width, even_height;
     int64_t frames;
     uint8_t *padded; // NULL when both sizes are even
@@ -125,6 +129,7 @@ static bool open_encoder(video *v, double fps) {
 static bool open_file(video *v) {
     v->stream = av.avformat_new_stream(v->format, NULL);
     if (!v->stream) return err_no_memory(sizeof *v->stream);
+    v->format->flags |= AVFMT_FLAG_BITEXACT; // no number of chance in it
     v->stream->time_base = v->encoder->time_base;
     v->stream->avg_frame_rate = v->encoder->framerate;
     int code = av.avcodec_parameters_from_context(v->stream->codecpar, v->encoder);
@@ -296,6 +301,73 @@ bool video_add(video *v, const uint8_t *rgba) {
     return video_encode(v, v->frame);
 }
 
+static void put_be(uint8_t *out, uint32_t value) {
+    for (int i = 0; i < 4; i++) out[i] = (uint8_t)(value >> (24 - 8 * i));
+}
+
+// A chunk of text, before the last one, which is 12 bytes.
+static void add_apng_text(video *v) {
+    static const char key[] = "roil:recipe";
+    const size_t length = sizeof key + strlen(v->comment);
+    uint8_t end[12], *chunk = mem_alloc(length + 12);
+    const off_t size = lseek(v->draft.fd, 0, SEEK_END);
+    if (size > 12 && pread(v->draft.fd, end, sizeof end, size - 12) == (ssize_t)sizeof end) {
+        put_be(chunk, (uint32_t)length);
+        memcpy(chunk + 4, "tEXt", 4);
+        memcpy(chunk + 8, key, sizeof key);
+        memcpy(chunk + 8 + sizeof key, v->comment, strlen(v->comment));
+        put_be(chunk + 8 + length, (uint32_t)crc32(0, chunk + 4, (uInt)length + 4));
+        file_draft_patch(&v->draft, (uint64_t)size - 12, chunk, length + 12);
+        file_draft_add(&v->draft, end, sizeof end);
+    }
+    mem_free(chunk);
+}
+
+// An element of EBML that readers pass over, at the end of the segment, whose size it adds to. A
+// size of 8 bytes begins with 1.
+static void add_webm_void(video *v) {
+    static const uint8_t segment[] = {0x18, 0x53, 0x80, 0x67, 0x01};
+    const size_t length = strlen(v->comment);
+    uint8_t begin[256], head[9] = {0xec, 0x01}, size[7];
+    const ssize_t count = pread(v->draft.fd, begin, sizeof begin, 0);
+    const uint8_t *at = count > 0 ? memmem(begin, (size_t)count, segment, sizeof segment) : NULL;
+    if (!at || at + sizeof segment + sizeof size > begin + count) return;
+    at += sizeof segment;
+    uint64_t sum = sizeof head + length;
+    for (int i = 6; i >= 0; i--, sum >>= 8) {
+        sum += at[i];
+        size[i] = (uint8_t)sum;
+    }
+    put_be(head + 5, (uint32_t)length);
+    file_draft_add(&v->draft, head, sizeof head);
+    file_draft_add(&v->draft, v->comment, length);
+    file_draft_patch(&v->draft, (uint64_t)(at - begin), size, sizeof size);
+}
+
+// An extension before the last byte, with text as it is, as Adobe puts XMP there (XMP part 3):
+// readers take each letter for the length of a block and land in the bytes that follow, which lead
+// to the end.
+static void add_gif_text(video *v) {
+    static const uint8_t head[] = "\x21\xff\x0broil:recipe";
+    uint8_t rest[259] = {1}; // 255 to 0, 0, and the end of the file
+    const off_t size = lseek(v->draft.fd, 0, SEEK_END);
+    if (size < 1) return;
+    for (int i = 0; i < 256; i++) rest[1 + i] = (uint8_t)(255 - i);
+    rest[258] = ';';
+    file_draft_patch(&v->draft, (uint64_t)size - 1, head, sizeof head - 1);
+    file_draft_add(&v->draft, v->comment, strlen(v->comment));
+    file_draft_add(&v->draft, rest, sizeof rest);
+}
+
+// Files of these kinds are said to be whole before one knows what to say.
+static void add_comment(video *v) {
+    const char *muxer = v->format->oformat->name;
+    if (!v->comment || lseek(v->draft.fd, 0, SEEK_END) < 0) return;
+    if (strcmp(muxer, "apng") == 0) add_apng_text(v);
+    if (strcmp(muxer, "webm") == 0) add_webm_void(v);
+    if (strcmp(muxer, "gif") == 0) add_gif_text(v);
+}
+
 static bool close_file(video *v) {
     int code = av.av_write_trailer(v->format);
     if (code >= 0) code = v->format->pb->error;
@@ -303,11 +375,13 @@ static bool close_file(video *v) {
     if (code >= 0) code = closed;
     if (code < 0) return fault(v, "cannot be written", code);
     v->drafting = false;
+    add_comment(v);
     return file_draft_end(&v->draft);
 }
 
 void video_set_comment(video *v, const char *text) {
-    av.av_dict_set(&v->format->metadata, "comment", text, 0);
+    av.av_dict_set(&v->format->metadata, "comment", text, 0); // of .mp4 and .mov
+    v->comment = mem_copy(text, strlen(text) + 1);
 }
 
 bool video_finish(video *v) {
@@ -326,6 +400,7 @@ void video_abandon(video *v) {
     av.av_packet_free(&v->packet);
     av.sws_freeContext(v->scaler);
     mem_free(v->padded);
+    mem_free(v->comment);
     if (v->drafting) file_draft_drop(&v->draft);
     mem_free(v);
 }

@@ -72,13 +72,19 @@ static const char *hash_inputs(roil_effect *e) {
 
 // ---- writing ----------------------------------------------------------------------------------
 
-char *roil_describe(roil_effect *e, const roil_making *how) {
-    json_t *settings = json_object(), *options = json_array();
+json_t *roil_list_settings(const roil_effect *e) {
+    json_t *settings = json_object();
     for (size_t i = 0; i < effect_control_count(e->effect); i++) {
         const effect_control *c = effect_get_control(e->effect, i);
         if (c->moved)
             json_object_set_new(settings, c->name, json_string(effect_control_setting(c)));
     }
+    return settings;
+}
+
+char *roil_describe(roil_effect *e, const roil_making *how) {
+    json_t *settings = how->settings ? json_incref(how->settings) : roil_list_settings(e);
+    json_t *options = json_array();
     for (size_t i = 0; how->options[i]; i++)
         json_array_append_new(options, json_string(how->options[i]));
     json_t *root = json_pack(
@@ -87,6 +93,8 @@ char *roil_describe(roil_effect *e, const roil_making *how) {
         e->shown, "frames", how->first, how->last, how->step, "size", (int)e->width, (int)e->height,
         "settings", settings, "options", options, "device", roil_device_name(e->owner), "driver",
         roil_device_driver(e->owner), "inputs", hash_inputs(e));
+    if (how->sheet) json_object_set_new(root, "sheet", json_string(how->sheet));
+    if (how->part) json_object_set_new(root, "part", json_string(how->part));
     char *text = root ? json_dumps(root, JSON_COMPACT | JSON_ENSURE_ASCII) : NULL;
     json_decref(root);
     return text;
@@ -172,10 +180,12 @@ static bool take_settings(owned_made *own, json_t *root) {
 
 // Takes nothing but options that change what is drawn.
 static bool is_option(const char *text) {
-    static const char *const known[] = {"--alpha", "--premultiplied", "--16",         "--float",
-                                        "--shown", "--dump-pass=",    "--reference=", "--warmup=",
-                                        "--fps=",  "--source=",       "--fields=",    "--size=",
-                                        "--box=",  "--tolerance=",    "--samples=",   "--shutter="};
+    static const char *const known[] = {
+        "--alpha",      "--premultiplied", "--16",       "--float",   "--shown",   "--dump-pass=",
+        "--reference=", "--warmup=",       "--fps=",     "--source=", "--fields=", "--size=",
+        "--box=",       "--tolerance=",    "--grid=",    "--cell=",   "--gutter=", "--frames=",
+        "--loop=",      "--maps=",         "--for=",     "--light=",  "--alpha=",  "--format=",
+        "--crop",       "--camera",        "--samples=", "--shutter="};
     for (size_t i = 0; i < COUNT_OF(known); i++) {
         size_t length = strlen(known[i]);
         bool value = known[i][length - 1] == '=';
@@ -199,6 +209,21 @@ static bool take_options(owned_made *own, const json_t *root) {
     return true;
 }
 
+// Takes the name of a file, which leads to no other folder.
+static const char *take_name(owned_made *own, const json_t *root, const char *key) {
+    const char *text = take_text(own, root, key);
+    bool plain = text && text[0] && strlen(text) < 200 && text[0] != '-' && text[0] != '.';
+    return plain && !strchr(text, '/') ? text : NULL;
+}
+
+static bool take_sheet(owned_made *own, const json_t *root) {
+    own->made.sheet = own->made.part = "";
+    if (strcmp(own->made.kind, "sheet") != 0) return true;
+    own->made.sheet = take_name(own, root, "sheet");
+    own->made.part = take_name(own, root, "part");
+    return own->made.sheet && own->made.part;
+}
+
 static bool take_all(owned_made *own, json_t *root) {
     roil_made *m = &own->made;
     const char *file = take_text(own, root, "effect");
@@ -211,7 +236,8 @@ static bool take_all(owned_made *own, json_t *root) {
         !m->inputs)
         return false;
     m->effect = recipe_stays_below(file) ? file : NULL;
-    return take_frames(m, root) && take_settings(own, root) && take_options(own, root);
+    return take_sheet(own, root) && take_frames(m, root) && take_settings(own, root) &&
+           take_options(own, root);
 }
 
 roil_made *roil_parse_made(const char *line, const char *name) {

@@ -513,9 +513,10 @@ static char *describe_film(const roil_video *v) {
     const double step = v->count > 1 ? v->second - v->first : 1;
     if (!v->count || v->last != v->first + step * (double)(v->count - 1)) return NULL;
     char fps[48], drawing[DRAWING_OPTIONS][48];
-    const char *options[2 + DRAWING_OPTIONS] = {fps};
+    const char *options[3 + DRAWING_OPTIONS] = {fps};
     snprintf(fps, sizeof fps, "--fps=%.17g", v->fps);
     size_t count = 1 + describe_drawing(v->effect, v->before, options + 1, drawing);
+    if (v->alpha) options[count++] = "--alpha";
     options[count] = NULL;
     return roil_describe(
         v->effect,

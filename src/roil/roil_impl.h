@@ -89,8 +89,11 @@ bool roil_find_assets(const roil *r, const roil_origin *origin, roil_assets *out
 // no link that was put there meanwhile leads out. -1: there is none.
 int roil_open_input(const roil_effect *e, const char *path, size_t *size);
 
-typedef struct roil_making {    // of an output, besides the effect, its settings and its size
-    const char *kind;           // "picture", "film", "volume"
+struct json_t;
+typedef struct roil_making {    // of an output, besides the effect and its size
+    const char *kind;           // "picture", "film", "volume", "sheet"
+    const char *sheet, *part;   // of a sheet, as in roil_made
+    struct json_t *settings;    // of roil_list_settings; NULL: those of now
     double first, last, step;   // frames; of volumes those that the box was chosen by
     const char *const *options; // of the command that makes it, ending with NULL
 } roil_making;
@@ -98,6 +101,8 @@ typedef struct roil_making {    // of an output, besides the effect, its setting
 // that begins with ROIL_RECIPE_BEGIN: every format holds it as it is. NULL: a text of it is no
 // UTF-8. Free it with mem_free.
 char *roil_describe(roil_effect *e, const roil_making *how);
+struct json_t *
+roil_list_settings(const roil_effect *e); // what differs from the script; json_decref
 roil_made *roil_parse_made(const char *line, const char *name); // `name` is for messages
 #define ROIL_RECIPE_BEGIN "{\"roil-recipe\":1,"
 

@@ -224,6 +224,7 @@ static roil_sheet *create_sheet(roil_effect *e, const roil_sheet_desc *desc) {
     roil_sheet *s = mem_alloc(sizeof *s);
     wish w = {0};
     s->owner = e;
+    s->settings = roil_list_settings(e);
     s->columns = desc->columns ? desc->columns : 8;
     s->rows = desc->rows ? desc->rows : 8;
     s->cell = desc->cell ? desc->cell : 256;
@@ -282,6 +283,8 @@ bool roil_sheet_save(roil_sheet *s, const char *file, const roil_sheet_options *
     if (!engine) return mem_leave(false);
     if (s->saved) return mem_leave(err_set("%s: the sheet was written already", file));
     s->saved = true;
+    s->made = options->made;
+    s->name = path_name(file);
     s->files = json_array();
     s->used = options->count ? options->count : s->columns * s->rows;
     if (s->maps[SHEET_MOTION].pixels && !s->passes.moves &&
@@ -293,9 +296,12 @@ bool roil_sheet_save(roil_sheet *s, const char *file, const roil_sheet_options *
     sheet_stem(file, &path);
     strbuf_add(&path, ".json");
     char *text = json_dumps(description, JSON_INDENT(2) | JSON_REAL_PRECISION(7));
-    bool done = text && file_write(strbuf_text(&path), text, strlen(text)) &&
+    strbuf whole = {0};
+    if (text) sheet_add_recipe(s, strbuf_text(&path), text, &whole);
+    bool done = text && file_write(strbuf_text(&path), whole.text, whole.length) &&
                 (!options->page || sheet_write_page(s, options->page, file, description));
     free(text);
+    strbuf_free(&whole);
     strbuf_free(&path);
     json_decref(description);
     return mem_leave(done);
@@ -310,6 +316,7 @@ void roil_sheet_free(roil_sheet *s) {
     for (int i = 0; i < SHEET_MAPS; i++) sheet_free(&s->maps[i]);
     budget_give(s->memory);
     json_decref(s->files);
+    json_decref(s->settings);
     strbuf_free(&s->summary);
     mem_free(s);
 }

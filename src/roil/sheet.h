@@ -39,9 +39,10 @@ struct roil_sheet {
     float axes[3][3];    // in the world: right, up, towards the camera
     budget_part *memory; // of the maps
     // As written.
-    sheet_area area; // of the cell as it was rendered
-    uint32_t used;   // cells
-    json_t *files;
+    sheet_area area;          // of the cell as it was rendered
+    uint32_t used;            // cells
+    json_t *files, *settings; // entries of the description; what was set before the camera was
+    const char *const *made, *name; // of roil_sheet_options; the name of the first file
     strbuf summary;
     bool saved;
 };
@@ -59,10 +60,14 @@ bool sheet_write_all(roil_sheet *s, const char *file, const roil_sheet_options *
                      const sheet_engine *engine);
 // Fills SHEET_MOTION from the colours of the first `count` cells.
 bool sheet_find_flow(roil_sheet *s, uint32_t count, bool loops, double fps);
+// Returns how it was made as a line of JSON, for one of its files. mem_free
+char *sheet_recipe(const roil_sheet *s, const char *file);
 json_t *sheet_text(const char *from); // as UTF-8, which JSON wants: names can be anything
 // The description, which the caller owns.
 json_t *sheet_describe(const roil_sheet *s, const char *file, const roil_sheet_options *options,
                        const sheet_engine *engine);
+// Appends a description as text, with how it was made in a line, as other outputs have it.
+void sheet_add_recipe(const roil_sheet *s, const char *file, const char *text, strbuf *out);
 bool sheet_write_page(const roil_sheet *s, const char *page, const char *file,
-                      const json_t *description);
+                      json_t *description);     // which gets the page's own `made`
 void sheet_stem(const char *file, strbuf *out); // without its extension

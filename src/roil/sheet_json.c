@@ -46,14 +46,31 @@ static json_t *lines(const char *const *from, size_t count, const char *file) {
     return all;
 }
 
-// What any output says of how it was made, without what is of one frame.
-static json_t *made(const roil_sheet *s) {
-    static const char *const none[] = {NULL}, *const of_a_frame[] = {"frame", "frames", "options"};
-    char *line = roil_describe(s->owner, &(roil_making){.kind = "sheet", .options = none});
-    json_t *all = line ? json_loads(line, 0, NULL) : NULL;
+char *sheet_recipe(const roil_sheet *s, const char *file) {
+    static const char *const none[] = {NULL};
+    const double frame = s->owner->shown;
+    return roil_describe(s->owner, &(roil_making){.kind = "sheet",
+                                                  .sheet = s->name,
+                                                  .part = path_name(file),
+                                                  .settings = s->settings,
+                                                  .first = frame,
+                                                  .last = frame,
+                                                  .step = 1,
+                                                  .options = s->made ? s->made : none});
+}
+
+static const char no_recipe[] = "\"made\": null";
+
+void sheet_add_recipe(const roil_sheet *s, const char *file, const char *text, strbuf *out) {
+    const char *at = strstr(text, no_recipe);
+    char *line = at ? sheet_recipe(s, file) : NULL;
+    if (line) {
+        strbuf_append(out, text, (size_t)(at - text));
+        strbuf_add(out, "\"made\": %s", line);
+        text = at + strlen(no_recipe);
+    }
+    strbuf_append(out, text, strlen(text));
     mem_free(line);
-    for (int i = 0; all && i < 3; i++) json_object_del(all, of_a_frame[i]);
-    return all;
 }
 
 json_t *sheet_describe(const roil_sheet *s, const char *file, const roil_sheet_options *options,
@@ -64,7 +81,7 @@ json_t *sheet_describe(const roil_sheet *s, const char *file, const roil_sheet_o
     json_t *all = json_object();
     json_object_set_new(all, "effect", sheet_text(effect_name(s->owner->effect)));
     json_object_set_new(all, "version", json_string(roil_version()));
-    json_object_set_new(all, "made", made(s));
+    json_object_set_new(all, "made", json_null()); // sheet_add_recipe
     json_object_set_new(all, "grid", json_pack("[i, i]", (int)s->columns, (int)s->rows));
     json_object_set_new(all, "order", json_string("left to right, top to bottom"));
     json_object_set_new(all, "frames", json_integer(s->used));

@@ -68,7 +68,10 @@ static bool add_data(const roil_sheet *s, const char *file, const json_t *descri
 }
 
 bool sheet_write_page(const roil_sheet *s, const char *page, const char *file,
-                      const json_t *description) {
+                      json_t *description) {
+    char *line = sheet_recipe(s, page);
+    if (line) json_object_set_new(description, "made", json_loads(line, 0, NULL));
+    mem_free(line);
     char path[PATH_CAP];
     void *template;
     size_t size;

@@ -40,7 +40,7 @@ static float coded(const sheet_file *f, size_t i, int c) {
     return f->srgb ? roil_srgb(v) : isfinite(v) ? clampf(v, 0, 1) : 0;
 }
 
-static bool write_bytes(const char *path, const sheet_file *f, bool tga) {
+static bool write_bytes(const char *path, const sheet_file *f, bool tga, const png_text *made) {
     const size_t count = pixels_of(f->pixels), channels = tga || f->alpha ? 4 : 3;
     uint8_t *bytes = mem_alloc(count * channels);
     const uint32_t width = f->pixels->columns * f->pixels->width,
@@ -50,12 +50,12 @@ static bool write_bytes(const char *path, const sheet_file *f, bool tga) {
             bytes[i * channels + c] = (uint8_t)lrintf(coded(f, i, (int)c) * 255);
     bool done =
         tga ? tga_write(path, width, height, bytes)
-            : png_write(path, &(png_image){width, height, (int)channels, 8, bytes}, NULL, 0);
+            : png_write(path, &(png_image){width, height, (int)channels, 8, bytes}, made, 1);
     mem_free(bytes);
     return done;
 }
 
-static bool write_words(const char *path, const sheet_file *f) {
+static bool write_words(const char *path, const sheet_file *f, const png_text *made) {
     const size_t count = pixels_of(f->pixels), channels = f->alpha ? 4 : 3;
     uint16_t *words = mem_alloc(count * channels * sizeof *words);
     for (size_t i = 0; i < count; i++)
@@ -65,12 +65,12 @@ static bool write_words(const char *path, const sheet_file *f) {
         png_write(path,
                   &(png_image){f->pixels->columns * f->pixels->width,
                                f->pixels->rows * f->pixels->height, (int)channels, 16, words},
-                  NULL, 0);
+                  made, 1);
     mem_free(words);
     return done;
 }
 
-static bool write_planes(const char *path, const sheet_file *f) {
+static bool write_planes(const char *path, const sheet_file *f, const char *made) {
     static const char *const names[] = {"R", "G", "B", "A"};
     const size_t count = pixels_of(f->pixels);
     float *planes = mem_alloc(count * 4 * sizeof *planes);
@@ -79,9 +79,11 @@ static bool write_planes(const char *path, const sheet_file *f) {
         for (size_t i = 0; i < count; i++) planes[c * count + i] = f->pixels->pixels[4 * i + c];
         channels[c] = (exr_channel){names[c], planes + c * count, true};
     }
-    bool done = exr_write(path, &(exr_image){f->pixels->columns * f->pixels->width,
-                                             f->pixels->rows * f->pixels->height, channels,
-                                             f->alpha ? 4 : 3});
+    bool done = exr_write_with(path,
+                               &(exr_image){f->pixels->columns * f->pixels->width,
+                                            f->pixels->rows * f->pixels->height, channels,
+                                            f->alpha ? 4 : 3},
+                               made);
     mem_free(planes);
     return done;
 }
@@ -92,10 +94,13 @@ json_t *sheet_write(roil_sheet *s, const char *file, const char *format, const s
     sheet_stem(file, &path);
     strbuf_add(&path, "%s.%s", what->suffix, extension);
     const char *name = strbuf_text(&path);
-    bool done = strcmp(format, "exr") == 0 ? write_planes(name, what)
+    char *line = sheet_recipe(s, name);
+    const png_text made = {"roil:recipe", line ? line : ""};
+    bool done = strcmp(format, "exr") == 0 ? write_planes(name, what, line)
                 : strcmp(format, "png16") == 0
-                    ? write_words(name, what)
-                    : write_bytes(name, what, strcmp(format, "tga") == 0);
+                    ? write_words(name, what, &made)
+                    : write_bytes(name, what, strcmp(format, "tga") == 0, &made);
+    mem_free(line);
     json_t *entry = NULL;
     if (done) {
         entry = json_object();

@@ -1,7 +1,8 @@
 """Outputs say how they were made, and `roil repro` makes them again."""
 import json
 import os
-import re
+import shutil
+import subprocess
 
 from lib.pictures import packed_pixels
 from lib.program import PUFF, SMALL, SOURCE, Case, main
@@ -42,6 +43,9 @@ return fx
 """
 
 
+KINDS = "webm", "mov", "gif", "apng"
+
+
 class Repro(Case):
     def setUp(self):
         super().setUp()
@@ -50,9 +54,8 @@ class Repro(Case):
         self.write("air.lua", AIR)
 
     def recipe(self, name):
-        found = re.search(rb'\{"roil-recipe":1,.*?\}(?=[^,}\]])', self.read(name) + b"\n", re.S)
-        self.assertTrue(found, name)
-        return json.loads(found[0])
+        raw = self.read(name)
+        return json.JSONDecoder().raw_decode(raw[raw.index(b'{"roil-recipe":1,'):].decode("latin-1"))[0]
 
     def same(self, name, *arguments):
         self.assertIn(f"{name}: the same, bit for bit", self.succeeds("repro", name, *arguments))
@@ -92,6 +95,16 @@ class Repro(Case):
         self.assertEqual(self.recipe("film.mp4")["frames"], [3, 9, 2])
         self.succeeds("render", "trail.lua", "--frames", "3", "-o", "one.mp4", *SMALL)
         self.same("one.mp4")
+        self.succeeds("render", "trail.lua", "--frames", "3-5", "--alpha", *SMALL,
+                      *[part for kind in KINDS for part in ("-o", "film." + kind)])
+        for kind in KINDS:
+            self.same("film." + kind)
+            self.assertIn("--alpha", self.recipe("film." + kind)["options"])
+            if not shutil.which("ffprobe"):
+                continue
+            said = subprocess.run(["ffprobe", "-v", "warning", "-count_frames", "-show_entries", "stream=nb_read_frames", "-of",
+                                   "csv=p=0", self.path("film." + kind)], capture_output=True, text=True, check=True)
+            self.assertEqual((said.stdout.strip(), said.stderr), ("3", ""), kind)
 
     def test_volumes(self):
         self.succeeds("export", "vdb", "air.lua", "-o", "v%d.vdb", "--frames", "1-3", "--fields", "density,velocity",
@@ -102,6 +115,28 @@ class Repro(Case):
         self.succeeds("export", "vdb", "trail.lua", "-o", "w%d.vdb", "--frames", "2-4", "--size", "20")
         self.same("w3.vdb", "-o", "kept/w.vdb")
         self.assertEqual(len(self.read("kept/w.vdb")), len(self.read("w3.vdb")))
+
+    def test_sheets(self):
+        self.write("puff.lua", PUFF)
+        self.succeeds("export", "sheet", "puff.lua", "-o", "out/fire.png", "--grid", "2x2", "--cell", "32", "--frames", "1-4",
+                      "--maps", "color,normal", "--light", "both", "--for", "unity", "--crop", "--set", "thickness=9",
+                      "--set", "camera.yaw=30", "--page", "out/play.html")
+        made = self.recipe("out/fire-normal.png")
+        self.assertEqual((made["kind"], made["sheet"], made["part"]), ("sheet", "fire.png", "fire-normal.png"))
+        self.assertEqual(made["settings"], {"thickness": "9", "camera.yaw": "30"})
+        self.assertEqual(self.recipe("out/fire.json"), json.loads(self.read("out/fire.json"))["made"])
+        os.rename(self.path("out/fire-normal.png"), self.path("renamed.png"))
+        for name in ("out/fire.png", "out/fire-scene.png", "out/fire.json", "out/play.html", "renamed.png"):
+            self.same(name)
+        self.succeeds("export", "sheet", "puff.lua", "-o", "raw.exr", "--grid", "2x2", "--cell", "16", "--frames", "1-4")
+        self.same("raw.exr")
+        self.write("puff.lua", PUFF.replace("perlin", "0.5 * perlin"))
+        self.differs("out/fire.png", "inputs: then", "as pictures: PSNR")
+        self.differs("out/fire.json", "out/fire.json: not the same")
+        for old, new in ((b'"part":"fire', b'"part":"../x'), (b'"part":"fire', b'"part":"/etc'), (b'"sheet":"fire', b'"sheet":"-fir')):
+            raw = self.read("out/fire.json")
+            self.write("bad.json", raw.replace(old, new))
+            self.fails(1, "its recipe is damaged", "repro", "bad.json")
 
     def test_what_has_changed_is_said(self):
         self.succeeds("render", "trail.lua", "--frames", "2", "-o", "a.png", "-o", "a.exr", *SMALL)
