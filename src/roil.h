@@ -412,6 +412,8 @@ typedef struct roil_made {
 } roil_made;
 roil_made *roil_read_made(const char *file); // of a stranger, too; NULL with a message
 void roil_free_made(roil_made *m);           // NULL is allowed
+// The hash of all files that an effect has read, as its outputs have it; lives as long.
+const char *roil_hash_inputs(roil_effect *e);
 
 typedef struct roil_video roil_video;
 // Begins a film of the effect's pictures in their size now: .mp4, .webm (VP9), .mov (ProRes 4444),

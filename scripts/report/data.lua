@@ -18,7 +18,7 @@ local function row_of(value)
     repeats = value.repeats, settings = value.settings, state = value.state, message = value.message,
     gpu = times_of(value.gpu_ms), cpu = times_of(value.cpu_ms), times = times_of(value.times_ms), counters = value.counters,
     memory = value.memory, error = value.error or {}, published = value.published,
-    device = value.device, picture = value.thumbnail, done = value.state == "done",
+    device = value.device, inputs = value.inputs, picture = value.thumbnail, done = value.state == "done",
   }
 end
 

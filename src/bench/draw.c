@@ -217,6 +217,7 @@ bool bench_measure_frames(bench_drawing *d, const bench_job *job, bench_row *row
     row->gpu = bench_summarise(&r.gpu, memory);
     row->cpu = bench_summarise(&r.cpu, memory);
     measure_memory(d->session, row);
+    row->inputs = arena_string(memory, roil_hash_inputs(d->effect));
     if (d->expired && row->gpu.count && !r.picture_count) keep_picture(d, &r);
     bench_drawing_end(d);
     if (r.picture_count && (done || d->expired))

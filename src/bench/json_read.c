@@ -230,7 +230,7 @@ static bool read_row(const reader *r, const json_t *from, bench_row *row) {
            get_named(r, from, "counters", &row->counters) &&
            get_named(r, from, "published", &row->published) && get_memory(r, from, row) &&
            get_error(r, from, row) && get_text(r, from, "device", &row->device) &&
-           get_thumbnail(r, from, row);
+           get_text(r, from, "inputs", &row->inputs) && get_thumbnail(r, from, row);
 }
 
 static bool read_rows(reader *r, const json_t *root, bench_results *out) {

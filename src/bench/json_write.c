@@ -108,6 +108,7 @@ static json_t *row_json(const bench_row *row) {
                             json_pack("{s:o, s:o, s:o}", "psnr", number(row->psnr), "ssim",
                                       number(row->ssim), "flip", number(row->flip)));
     if (row->device && row->device[0]) json_object_set_new(all, "device", text(row->device));
+    if (row->inputs && row->inputs[0]) json_object_set_new(all, "inputs", text(row->inputs));
     if (row->thumbnail) json_object_set_new(all, "thumbnail", text(row->thumbnail));
     json_object_set_new(all, "published", numbers_json(&row->published));
     return all;

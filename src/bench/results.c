@@ -50,6 +50,7 @@ static bench_row copy_row(const bench_row *row, arena *memory) {
     to.inside = NULL; // these are not measured any more
     to.message = arena_string(memory, row->message ? row->message : "");
     to.device = row->device ? arena_string(memory, row->device) : NULL;
+    to.inputs = row->inputs ? arena_string(memory, row->inputs) : NULL;
     to.thumbnail = row->thumbnail ? arena_string(memory, row->thumbnail) : NULL;
     to.frames = arena_copy(memory, row->frames, row->frame_count * sizeof *row->frames);
     to.axes = copy_settings(row->axes, memory);

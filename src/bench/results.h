@@ -75,6 +75,7 @@ typedef struct bench_row {
     bool compared;           // the three below are valid, for the worst frame
     double psnr, ssim, flip; // psnr INFINITY: equal
     const char *thumbnail;   // PNG, relative to the folder of the results; NULL: none
+    const char *inputs;      // hash of all files that the effect had read; NULL or "": unknown
     // "NAME (DRIVER)" of the device that measured it, where others measured most of the rows; NULL
     // or
     // "": that of the results.

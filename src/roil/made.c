@@ -51,8 +51,8 @@ static int by_value(const void *a, const void *b) {
     return memcmp(a, b, sizeof(hash128));
 }
 
-// Hashes what is in all files that the effect has read, whatever they are called.
-static const char *hash_inputs(roil_effect *e) {
+// Hashes what is in the files, whatever they are called.
+const char *roil_hash_inputs(roil_effect *e) {
     if (e->inputs[0]) return e->inputs;
     const char *const *files;
     size_t count = effect_files(e->effect, &files), found = 0;
@@ -92,7 +92,7 @@ char *roil_describe(roil_effect *e, const roil_making *how) {
         "roil", ROIL_VERSION, "kind", how->kind, "effect", effect_source(e->effect), "frame",
         e->shown, "frames", how->first, how->last, how->step, "size", (int)e->width, (int)e->height,
         "settings", settings, "options", options, "device", roil_device_name(e->owner), "driver",
-        roil_device_driver(e->owner), "inputs", hash_inputs(e));
+        roil_device_driver(e->owner), "inputs", roil_hash_inputs(e));
     if (how->sheet) json_object_set_new(root, "sheet", json_string(how->sheet));
     if (how->part) json_object_set_new(root, "part", json_string(how->part));
     char *text = root ? json_dumps(root, JSON_COMPACT | JSON_ENSURE_ASCII) : NULL;

@@ -3,6 +3,7 @@ import csv
 import io
 import json
 import os
+import re
 import signal
 import subprocess
 import time
@@ -67,6 +68,10 @@ class Bench(Case):
             self.assertTrue(0 < row["memory"]["device"] <= row["memory"]["reserved"])
             self.assertGreater(row["memory"]["host"], 1 << 20)
             self.assertEqual(Png(self.read("out/" + row["thumbnail"])).width, 96)
+        self.succeeds("render", "puff.lua", "--frames", "3", "-o", "a.png", "--size", "96x54")
+        inputs = re.search(rb'"inputs":"([0-9a-f]{32})"', self.read("a.png"))[1].decode()
+        self.assertEqual({row["inputs"] for row in all_of_it["rows"]}, {inputs})
+        self.assertIn(f"<dt>Hash of all that it read</dt><dd>{inputs}</dd>", self.read("out/report.html").decode())
         coarse, fine = all_of_it["rows"][0], all_of_it["rows"][2]
         self.assertLess(coarse["counters"]["march.samples"], fine["counters"]["march.samples"])
         self.assertLess(coarse["error"]["psnr"], fine["error"]["psnr"])
