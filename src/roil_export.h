@@ -61,7 +61,9 @@ typedef struct roil_sheet_desc {
     uint32_t cell;          // pixels along each side of a cell, 16 to 4096; 0: 256
     uint32_t gutter; // pixels along the edges of a cell that the medium stays out of, below half
     bool camera; // keep the effect's camera; else an orthographic one looks the same way and is set
-                 // so that all that can be seen fills the cells
+                 // so that all that the density can be fills the cells
+    float part[4];      // of that: left, top, right, bottom, 0 to 1 from the top left, as
+                        // roil_sheet_find_used gives it; all 0: all
     double first, last; // frames that will be seen
 } roil_sheet_desc;
 typedef struct roil_sheet_options {
@@ -92,6 +94,9 @@ bool roil_repeats(roil_effect *e, const char *source, double seconds, char *why,
 // Adds the last frame to a cell, times a weight: cells to which several frames are added dissolve
 // from one to the other.
 bool roil_sheet_add(roil_sheet *s, uint32_t cell, double weight);
+// Finds the part of a cell that is used in any of the first `count`, which show frames in rising
+// order, and half of the largest step from one to the next beside it. False: nothing is seen.
+bool roil_sheet_find_used(const roil_sheet *s, uint32_t count, float part[4]);
 // Writes "fire.png", "fire-motion.png" and so on, and what is in them as "fire.json". Only once.
 bool roil_sheet_save(roil_sheet *s, const char *file, const roil_sheet_options *options);
 // A sentence on what was written, after roil_sheet_save; valid until roil_sheet_free.

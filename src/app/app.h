@@ -142,6 +142,9 @@ typedef struct app_export {                 // of an effect: what `roil export v
     app_settings *settings;
     const char *file;
     bool (*plan)(void *job, roil_effect *e); // completes the job; false with a message: bad usage
+    // Draws with the effect, which is then loaded anew; false with a message: bad input. May be
+    // NULL.
+    bool (*look)(void *job, roil_effect *e);
     bool (*make)(void *job, roil_effect *e); // false with a message: bad input
     void *job;
 } app_export;

@@ -49,6 +49,15 @@ static int export_raw(int argc, const char **argv) {
     return status;
 }
 
+// Loads the effect anew after a look at it.
+static bool look_first(const app_export *x, roil *r, roil_effect **e) {
+    if (!x->look) return true;
+    if (!x->look(x->job, *e)) return false;
+    roil_unload(*e);
+    *e = roil_load(r, x->file, x->settings->all, x->settings->count);
+    return *e != NULL;
+}
+
 int app_export_effect(const app_export *x) {
     roil_desc desc = app_device_desc(x->device);
     app_progress files = {0};
@@ -62,7 +71,7 @@ int app_export_effect(const app_export *x) {
         status = app_fail_input();
     else if (!x->plan(x->job, e))
         status = app_fail(APP_BAD_USAGE, "export: %s", roil_error());
-    else if (!x->make(x->job, e))
+    else if (!look_first(x, r, &e) || !x->make(x->job, e))
         status = app_fail_input();
     roil_unload(e);
     return app_close(r, status);

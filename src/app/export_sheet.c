@@ -24,7 +24,7 @@ typedef struct job {
     app_settings settings;
     app_device device;
     app_frames frames;
-    int cell, gutter, camera, crop;
+    int cell, gutter, camera, crop, all;
     double loop; // s
     bool whole;  // it repeats by itself
     shot *shots; // by frame
@@ -120,8 +120,14 @@ static bool sheet_parse(job *j, int argc, const char **argv, poptContext *contex
          "png, png16 (16 bits a channel), exr or tga (default: by the name)", "WORD"},
         {"crop", '\0', POPT_ARG_NONE, &j->crop, 0, "cut the cells to what is used in any", NULL},
         {"camera", '\0', POPT_ARG_NONE, &j->camera, 0,
-         "keep the effect's camera (default: orthographic, looking the same way, around all of the "
-         "medium)",
+         "keep the effect's camera (default: orthographic, looking the same way, around all that "
+         "is "
+         "seen)",
+         NULL},
+        {"all", '\0', POPT_ARG_NONE, &j->all, 0,
+         "show all places where the medium may be, without a look at where it is, which takes up "
+         "to "
+         "16 small frames, and simulates twice",
          NULL},
         {"source", '\0', POPT_ARG_STRING, &j->desc.source, 0, "a pass march (default: the first)",
          "NAME"},
@@ -162,6 +168,7 @@ static void list_options(job *j) {
     if (j->loop > 0) j->made[count++] = arena_format(&j->memory, "--loop=%.17g", j->loop);
     if (j->crop) j->made[count++] = "--crop";
     if (j->camera) j->made[count++] = "--camera";
+    if (j->all) j->made[count++] = "--all";
     j->options.made = j->made;
 }
 
@@ -251,22 +258,45 @@ static bool plan(void *user, roil_effect *e) {
 
 // ---- work -------------------------------------------------------------------------------------
 
-static bool draw(const job *j, roil_effect *e, roil_sheet *s) {
+static bool draw(roil_effect *e, roil_sheet *s, uint32_t cell, const shot *shots, size_t count,
+                 const char *unit) {
     app_progress progress, steps = {0};
-    bool done = roil_prepare(e, j->desc.cell, j->desc.cell);
+    bool done = roil_prepare(e, cell, cell);
     roil_on_progress(e, app_tell_steps, &steps);
-    app_progress_begin(&progress, j->shot_count, "frames");
+    app_progress_begin(&progress, count, unit);
     app_hear_interrupts();
-    for (size_t i = 0; done && i < j->shot_count; i++) {
+    for (size_t i = 0; done && i < count; i++) {
         if (app_is_interrupted(NULL)) {
-            done = err_set("stopped after %zu of %zu frames", i, j->shot_count);
+            done = err_set("stopped after %zu of %zu %s", i, count, unit);
             break;
         }
-        done = roil_render(e, j->shots[i].frame) &&
-               roil_sheet_add(s, j->shots[i].cell, j->shots[i].weight);
+        done = roil_render(e, shots[i].frame) && roil_sheet_add(s, shots[i].cell, shots[i].weight);
         if (done) app_progress_step(&progress, i + 1);
     }
     app_progress_end(&progress);
+    return done;
+}
+
+// Finds where the medium is seen, in a few small frames.
+static bool look(void *user, roil_effect *e) {
+    enum { SIDE = 4, MOST = SIDE * SIDE, CELL = 64 };
+    job *j = user;
+    shot shots[MOST];
+    size_t count = j->shot_count < MOST ? j->shot_count : MOST;
+    for (size_t i = 0; i < count; i++) {
+        size_t at = count > 1 ? i * (j->shot_count - 1) / (count - 1) : 0;
+        shots[i] = (shot){j->shots[at].frame, 1, (uint32_t)i};
+    }
+    roil_sheet *s = roil_sheet_create(e, &(roil_sheet_desc){.source = j->desc.source,
+                                                            .light = "scene",
+                                                            .columns = SIDE,
+                                                            .rows = SIDE,
+                                                            .cell = CELL,
+                                                            .first = j->desc.first,
+                                                            .last = j->desc.last});
+    bool done = s && draw(e, s, CELL, shots, count, "looks");
+    if (done) roil_sheet_find_used(s, (uint32_t)count, j->desc.part); // else all is shown
+    roil_sheet_free(s);
     return done;
 }
 
@@ -275,7 +305,8 @@ static bool export_all(void *user, roil_effect *e) {
     if (!app_can_write(j->output)) return false;
     list_options(j);
     roil_sheet *s = roil_sheet_create(e, &j->desc);
-    bool done = s && draw(j, e, s) && roil_sheet_save(s, j->output, &j->options);
+    bool done = s && draw(e, s, j->desc.cell, j->shots, j->shot_count, "frames") &&
+                roil_sheet_save(s, j->output, &j->options);
     if (done) {
         app_warn_of_trouble(e);
         printf("wrote %s: %u cells at %.4g a second\n", roil_sheet_summary(s), j->options.count,
@@ -289,10 +320,15 @@ static bool export_all(void *user, roil_effect *e) {
 int export_sheet(int argc, const char **argv) {
     job j = {.frames.step = 1, .cell = 256, .gutter = 4};
     poptContext context;
-    int status =
-        sheet_parse(&j, argc, argv, &context)
-            ? app_export_effect(&(app_export){&j.device, &j.settings, j.file, plan, export_all, &j})
-            : app_fail(APP_BAD_USAGE, "export: %s", roil_error());
+    int status = sheet_parse(&j, argc, argv, &context)
+                     ? app_export_effect(&(app_export){.device = &j.device,
+                                                       .settings = &j.settings,
+                                                       .file = j.file,
+                                                       .plan = plan,
+                                                       .look = j.camera || j.all ? NULL : look,
+                                                       .make = export_all,
+                                                       .job = &j})
+                     : app_fail(APP_BAD_USAGE, "export: %s", roil_error());
     poptFreeContext(context);
     mem_free(j.shots);
     arena_free(&j.memory);

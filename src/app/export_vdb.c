@@ -162,8 +162,12 @@ int export_vdb(int argc, const char **argv) {
     job j = {.frames.step = 1};
     poptContext context;
     int status = export_parse(&j, argc, argv, &context)
-                     ? app_export_effect(&(app_export){&j.device, &j.settings, j.file,
-                                                       export_complete, export_all, &j})
+                     ? app_export_effect(&(app_export){.device = &j.device,
+                                                       .settings = &j.settings,
+                                                       .file = j.file,
+                                                       .plan = export_complete,
+                                                       .make = export_all,
+                                                       .job = &j})
                      : app_fail(APP_BAD_USAGE, "export: %s", roil_error());
     poptFreeContext(context);
     app_free_frames(&j.frames);

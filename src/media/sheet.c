@@ -34,18 +34,29 @@ static bool is_used(const float *pixel, float least, int channels) {
     return false;
 }
 
-sheet_area sheet_find_used(const sheet *s, float least, int channels) {
+sheet_area sheet_find_used_in(const sheet *s, uint32_t cell, float least, int channels) {
     sheet_area used = {s->width, s->height, 0, 0};
-    for (uint32_t cell = 0; cell < s->columns * s->rows; cell++)
-        for (uint32_t y = 0; y < s->height; y++)
-            for (uint32_t x = 0; x < s->width; x++) {
-                if (!is_used(sheet_pixel(s, cell, x, y), least, channels)) continue;
-                if (x < used.left) used.left = x;
-                if (y < used.top) used.top = y;
-                if (x >= used.right) used.right = x + 1;
-                if (y >= used.bottom) used.bottom = y + 1;
-            }
+    for (uint32_t y = 0; y < s->height; y++)
+        for (uint32_t x = 0; x < s->width; x++) {
+            if (!is_used(sheet_pixel(s, cell, x, y), least, channels)) continue;
+            if (x < used.left) used.left = x;
+            if (y < used.top) used.top = y;
+            if (x >= used.right) used.right = x + 1;
+            if (y >= used.bottom) used.bottom = y + 1;
+        }
     return used;
+}
+
+sheet_area sheet_find_used(const sheet *s, float least, int channels) {
+    sheet_area all = {s->width, s->height, 0, 0};
+    for (uint32_t cell = 0; cell < s->columns * s->rows; cell++) {
+        sheet_area used = sheet_find_used_in(s, cell, least, channels);
+        if (used.left < all.left) all.left = used.left;
+        if (used.top < all.top) all.top = used.top;
+        if (used.right > all.right) all.right = used.right;
+        if (used.bottom > all.bottom) all.bottom = used.bottom;
+    }
+    return all;
 }
 
 void sheet_crop(sheet *s, sheet_area area) {

@@ -25,6 +25,7 @@ void sheet_add(sheet *s, uint32_t cell, const float *picture, float weight);
 // Returns the smallest area of all cells outside of which no channel up to `channels` of any is
 // above `least`; empty when none is.
 sheet_area sheet_find_used(const sheet *s, float least, int channels);
+sheet_area sheet_find_used_in(const sheet *s, uint32_t cell, float least, int channels); // of one
 // Cuts every cell to an area, which lies in it.
 void sheet_crop(sheet *s, sheet_area area);
 

@@ -178,7 +178,6 @@ static bool take_over(roil_live *l, effect *made, uint32_t width, uint32_t heigh
 
 static void set_message(roil_live *l, char *message) {
     mem_free(l->message);
-    mem_free(l->file);
     l->message = message;
 }
 
@@ -262,6 +261,7 @@ static void free_live(roil_live *l) { // its threads have ended
     pthread_cond_destroy(&l->idle);
     pthread_mutex_destroy(&l->lock);
     mem_free(l->settings);
+    mem_free(l->file);
     mem_free(l->message);
     mem_free(l);
 }

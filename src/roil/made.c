@@ -181,11 +181,11 @@ static bool take_settings(owned_made *own, json_t *root) {
 // Takes nothing but options that change what is drawn.
 static bool is_option(const char *text) {
     static const char *const known[] = {
-        "--alpha",      "--premultiplied", "--16",       "--float",   "--shown",   "--dump-pass=",
-        "--reference=", "--warmup=",       "--fps=",     "--source=", "--fields=", "--size=",
-        "--box=",       "--tolerance=",    "--grid=",    "--cell=",   "--gutter=", "--frames=",
-        "--loop=",      "--maps=",         "--for=",     "--light=",  "--alpha=",  "--format=",
-        "--crop",       "--camera",        "--samples=", "--shutter="};
+        "--alpha",      "--premultiplied", "--16",       "--float",    "--shown",   "--dump-pass=",
+        "--reference=", "--warmup=",       "--fps=",     "--source=",  "--fields=", "--size=",
+        "--box=",       "--tolerance=",    "--grid=",    "--cell=",    "--gutter=", "--frames=",
+        "--loop=",      "--maps=",         "--for=",     "--light=",   "--alpha=",  "--format=",
+        "--crop",       "--camera",        "--samples=", "--shutter=", "--all"};
     for (size_t i = 0; i < COUNT_OF(known); i++) {
         size_t length = strlen(known[i]);
         bool value = known[i][length - 1] == '=';

@@ -142,8 +142,18 @@ static void find_pivot(roil_sheet *s, const vec3 middle) {
     s->pivot[1] = 0.5f + glm_vec3_dot((float *)(uintptr_t)middle, s->axes[1]) / s->height;
 }
 
+// Narrows what is seen to a part of it: moves the middle. Returns half of its longer side.
+static float narrow(const roil_sheet *s, const float part[4], float half, vec3 middle) {
+    const float width = part[2] - part[0], height = part[3] - part[1];
+    if (!(width > 0 && height > 0)) return half;
+    const float right = part[0] + part[2] - 1, down = part[1] + part[3] - 1;
+    glm_vec3_muladds((float *)(uintptr_t)s->axes[0], right * half, middle);
+    glm_vec3_muladds((float *)(uintptr_t)s->axes[1], -down * half, middle);
+    return half * fmaxf(width, height);
+}
+
 // An orthographic camera that looks the way that the effect's own does at first.
-static bool set_camera(roil_sheet *s, bool keep) {
+static bool set_camera(roil_sheet *s, bool keep, const float part[4]) {
     roil_camera c;
     vec3 middle, eye;
     char text[32];
@@ -155,9 +165,9 @@ static bool set_camera(roil_sheet *s, bool keep) {
         find_pivot(s, c.target);
         return true;
     }
-    const float half = find_middle(s, middle);
+    const float whole = find_middle(s, middle), half = narrow(s, part, whole, middle);
     s->height = 2 * half * (float)s->cell / (float)(s->cell - 2 * s->gutter);
-    s->distance = fmaxf(4 * half, 1);
+    s->distance = fmaxf(4 * whole, 1);
     glm_vec3_copy(middle, eye);
     glm_vec3_muladds(s->axes[2], s->distance, eye);
     find_pivot(s, middle);
@@ -230,7 +240,7 @@ static roil_sheet *create_sheet(roil_effect *e, const roil_sheet_desc *desc) {
     s->cell = desc->cell ? desc->cell : 256;
     s->gutter = desc->gutter;
     if (want_all(&w, desc) && check_size(s) && add_passes(s, desc, &w) &&
-        set_camera(s, desc->camera) && make_maps(s, &w)) {
+        set_camera(s, desc->camera, desc->part) && make_maps(s, &w)) {
         s->depth = w.depth;
         s->temperature = w.temperature;
         return s;
@@ -275,6 +285,28 @@ bool roil_sheet_add(roil_sheet *s, uint32_t cell, double weight) {
             !add_map(s, (sheet_map)i, cell, (float)weight))
             return mem_leave(false);
     return mem_leave(true);
+}
+
+bool roil_sheet_find_used(const roil_sheet *s, uint32_t count, float part[4]) {
+    const sheet *map = &s->maps[s->maps[SHEET_SCENE].pixels ? SHEET_SCENE : SHEET_SHOWN];
+    if (!map->pixels) return err_set("the sheet has no colours");
+    const float whole = (float)s->cell;
+    float all[4] = {whole, whole, 0, 0}, step[4] = {0}, before[4];
+    bool seen = false;
+    for (uint32_t i = 0; i < count; i++) {
+        const sheet_area a = sheet_find_used_in(map, i, SHEET_LEAST, 4);
+        const float now[] = {(float)a.left, (float)a.top, (float)a.right, (float)a.bottom};
+        if (a.left >= a.right) continue;
+        for (int k = 0; k < 4; k++) {
+            if (seen) step[k] = fmaxf(step[k], fabsf(now[k] - before[k]) / 2);
+            all[k] = k < 2 ? fminf(all[k], now[k]) : fmaxf(all[k], now[k]);
+            before[k] = now[k];
+        }
+        seen = true;
+    }
+    for (int k = 0; seen && k < 4; k++) // and a pixel, since edges are seen where their middles are
+        part[k] = clampf((all[k] + (k < 2 ? -1 : 1) * (step[k] + 1)) / whole, 0, 1);
+    return seen || err_set("nothing of the medium of '%s' is seen", s->passes.source);
 }
 
 bool roil_sheet_save(roil_sheet *s, const char *file, const roil_sheet_options *options) {

@@ -5,6 +5,8 @@
 #include "roil/roil_impl.h"
 #include <jansson.h>
 
+#define SHEET_LEAST (1.0f / 512) // that is seen in a pixel of 8 bits
+
 typedef enum sheet_map {
     SHEET_SHOWN,
     SHEET_SCENE,

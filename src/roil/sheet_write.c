@@ -12,8 +12,7 @@
 
 enum { STEP = 4 }; // pixels that the sides of cropped cells are a multiple of
 
-static const float LEAST = 1.0f / 512, // that is seen in a pixel of 8 bits
-    THIN = 1e-3f;                      // opacity below which a mean is taken from around
+static const float THIN = 1e-3f; // opacity below which a mean is taken from around
 
 void sheet_stem(const char *file, strbuf *out) {
     const char *extension = path_extension(file);
@@ -324,7 +323,7 @@ static sheet_area used_area(const roil_sheet *s) {
     for (int i = 0; i < SHEET_MAPS; i++) {
         const sheet *map = &s->maps[i];
         if (!map->pixels || i == SHEET_MOTION || i == SHEET_NORMAL || i == SHEET_HEAT) continue;
-        sheet_area used = sheet_find_used(map, LEAST, 4);
+        sheet_area used = sheet_find_used(map, SHEET_LEAST, 4);
         if (used.left < all.left) all.left = used.left;
         if (used.top < all.top) all.top = used.top;
         if (used.right > all.right) all.right = used.right;

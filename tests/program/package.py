@@ -57,6 +57,16 @@ class Package(Case):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertGreater(os.path.getsize(self.path("puff.webm")), 300)
 
+    def test_it_brings_the_farm(self):
+        self.write("puff.lua", PUFF)
+        for tool in ("dirname", "sed"):  # a machine without Slurm
+            os.makedirs(self.path("tools"), exist_ok=True)
+            os.symlink(shutil.which(tool), self.path("tools/" + tool))
+        farm = ["env", "PATH=" + self.path("tools"), f"{self.package}/bin/roil-farm"]
+        self.assertIn("--shards 8", self.run_hidden(*farm, "--help").stdout)
+        done = self.run_hidden(*farm, "frames", self.path("puff.lua"), "-o", self.path("%d.png"), "--frames", "1-4", "--shards", "2")
+        self.assertEqual(done.stderr, "farm: there is no sbatch here: Slurm shares the work (Debian: slurm-wlm)\n")
+
     def test_libraries_are_its_own(self):
         loaded = "".join(self.run_hidden("env", "LD_TRACE_LOADED_OBJECTS=1", f"{self.package}/{program}").stdout
                          for program in ("bin/roil", "libexec/roil/roil-reader", "libexec/roil/roil-reader-vdb"))
