@@ -65,6 +65,7 @@ typedef struct roil_sheet_desc {
     float part[4];      // of that: left, top, right, bottom, 0 to 1 from the top left, as
                         // roil_sheet_find_used gives it; all 0: all
     double first, last; // frames that will be seen
+    uint32_t fade;      // the last cells, which dissolve (roil_sheet_dissolve); 0: none
 } roil_sheet_desc;
 typedef struct roil_sheet_options {
     const char *engine; // whose signs, encodings and alpha: "unity", "unreal", "godot" or "labs";
@@ -94,8 +95,13 @@ bool roil_repeats(roil_effect *e, const char *source, double seconds, char *why,
 // Adds the last frame to a cell, times a weight: cells to which several frames are added dissolve
 // from one to the other.
 bool roil_sheet_add(roil_sheet *s, uint32_t cell, double weight);
+// Adds the last frame as what one of the last cells becomes, and how far it has by then, 0 to 1:
+// for loops. Both are moved onto each other along the optical flow between their colours, where
+// libroil-flow is, and cross-faded.
+bool roil_sheet_dissolve(roil_sheet *s, uint32_t cell, double part);
 // Finds the part of a cell that is used in any of the first `count`, which show frames in rising
-// order, and half of the largest step from one to the next beside it. False: nothing is seen.
+// order, and half of the largest step from one to the next beside it. The sheet's light must be
+// "both". False: nothing is seen.
 bool roil_sheet_find_used(const roil_sheet *s, uint32_t count, float part[4]);
 // Writes "fire.png", "fire-motion.png" and so on, and what is in them as "fire.json". Only once.
 bool roil_sheet_save(roil_sheet *s, const char *file, const roil_sheet_options *options);

@@ -12,8 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-typedef struct shot { // what a cell is given
-    double frame, weight;
+typedef struct shot {   // what a cell is given
+    double frame, part; // above 0: what it becomes, and how far it has
     uint32_t cell;
 } shot;
 
@@ -174,9 +174,9 @@ static void list_options(job *j) {
 
 // ---- which frame goes where -------------------------------------------------------------------
 
-static void add_shot(job *j, double frame, uint32_t cell, double weight) {
+static void add_shot(job *j, double frame, uint32_t cell, double part) {
     MEM_RESERVE(j->shots, j->shot_count + 1, j->shot_capacity);
-    j->shots[j->shot_count++] = (shot){frame, weight, cell};
+    j->shots[j->shot_count++] = (shot){frame, part, cell};
 }
 
 static int by_frame(const void *a, const void *b) {
@@ -193,12 +193,12 @@ static bool plan_frames(job *j, const roil_effect_info *info) {
             j->frames.count, cells);
     if (j->frames.count) {
         for (size_t i = 0; i < j->frames.count; i++)
-            add_shot(j, j->frames.numbers[i], (uint32_t)i, 1);
+            add_shot(j, j->frames.numbers[i], (uint32_t)i, 0);
         step = j->frames.step;
     } else {
         size_t count = info->frames < cells ? info->frames : cells;
         for (size_t i = 0; i < count; i++)
-            add_shot(j, info->first_frame + step * (double)i, (uint32_t)i, 1);
+            add_shot(j, info->first_frame + step * (double)i, (uint32_t)i, 0);
     }
     j->options.count = (uint32_t)j->shot_count;
     j->options.fps = info->fps / step;
@@ -228,7 +228,7 @@ static bool plan_loop(job *j, roil_effect *e, const roil_effect_info *info) {
         const double part = i < cells - fade ? 0 : (i - (cells - fade) + 1.0) / (fade + 1.0);
         const double before =
             part * part * (3 - 2 * part); // slow at both ends, of which one is the seam
-        add_shot(j, first + step * i, i, 1 - before);
+        add_shot(j, first + step * i, i, 0);
         if (before > 0) add_shot(j, first + step * ((double)i - cells), i, before);
     }
     if (j->whole)
@@ -237,6 +237,7 @@ static bool plan_loop(job *j, roil_effect *e, const roil_effect_info *info) {
         snprintf(j->note, sizeof j->note,
                  "loop: the last %u cells dissolve into what came before the first, since %s", fade,
                  why);
+    j->desc.fade = fade;
     j->notes[0] = j->note;
     j->options.notes = j->notes;
     j->options.note_count = 1;
@@ -270,7 +271,10 @@ static bool draw(roil_effect *e, roil_sheet *s, uint32_t cell, const shot *shots
             done = err_set("stopped after %zu of %zu %s", i, count, unit);
             break;
         }
-        done = roil_render(e, shots[i].frame) && roil_sheet_add(s, shots[i].cell, shots[i].weight);
+        const shot *now = &shots[i];
+        done = roil_render(e, now->frame) &&
+               (now->part > 0 ? roil_sheet_dissolve(s, now->cell, now->part)
+                              : roil_sheet_add(s, now->cell, 1));
         if (done) app_progress_step(&progress, i + 1);
     }
     app_progress_end(&progress);
@@ -285,10 +289,10 @@ static bool look(void *user, roil_effect *e) {
     size_t count = j->shot_count < MOST ? j->shot_count : MOST;
     for (size_t i = 0; i < count; i++) {
         size_t at = count > 1 ? i * (j->shot_count - 1) / (count - 1) : 0;
-        shots[i] = (shot){j->shots[at].frame, 1, (uint32_t)i};
+        shots[i] = (shot){j->shots[at].frame, 0, (uint32_t)i};
     }
     roil_sheet *s = roil_sheet_create(e, &(roil_sheet_desc){.source = j->desc.source,
-                                                            .light = "scene",
+                                                            .light = "both",
                                                             .columns = SIDE,
                                                             .rows = SIDE,
                                                             .cell = CELL,

@@ -224,9 +224,13 @@ static bool make_maps(roil_sheet *s, const wish *w) {
     const uint64_t size = (uint64_t)s->columns * s->rows * s->cell * s->cell * 4 * sizeof(float);
     uint64_t count = WORK;
     for (int i = 0; i < SHEET_MAPS; i++) count += w->maps[i];
-    s->memory = budget_take(budget_host(), count * size, "sheets");
+    const uint64_t before = size / (s->columns * s->rows) * s->fade;
+    s->memory = budget_take(budget_host(), count * size + (count - WORK) * before, "sheets");
     for (int i = 0; s->memory && i < SHEET_MAPS; i++)
         if (w->maps[i]) s->maps[i] = sheet_create(s->columns, s->rows, s->cell, s->cell);
+    for (int i = 0; s->memory && s->fade && i < SHEET_MAPS; i++)
+        if (w->maps[i]) s->before[i] = sheet_create(s->fade, 1, s->cell, s->cell);
+    s->parts = mem_alloc(s->fade * sizeof *s->parts);
     return s->memory;
 }
 
@@ -239,6 +243,7 @@ static roil_sheet *create_sheet(roil_effect *e, const roil_sheet_desc *desc) {
     s->rows = desc->rows ? desc->rows : 8;
     s->cell = desc->cell ? desc->cell : 256;
     s->gutter = desc->gutter;
+    s->fade = desc->fade < s->columns * s->rows ? desc->fade : 0;
     if (want_all(&w, desc) && check_size(s) && add_passes(s, desc, &w) &&
         set_camera(s, desc->camera, desc->part) && make_maps(s, &w)) {
         s->depth = w.depth;
@@ -264,39 +269,46 @@ bool roil_repeats(roil_effect *e, const char *source, double seconds, char *why,
     return done;
 }
 
-static bool add_map(roil_sheet *s, sheet_map map, uint32_t cell, float weight) {
+static bool add_map(roil_sheet *s, sheet *maps, sheet_map map, uint32_t cell, float weight) {
     uint32_t width, height;
     float *pixels = roil_read_linear(s->owner, s->passes.images[sources[map]], &width, &height);
     if (!pixels) return false;
     const bool fits = width == s->cell && height == s->cell;
     for (size_t i = 0; is_mean(map) && i < (size_t)width * height; i++)
         for (int c = 0; c < 3; c++) pixels[4 * i + c] *= pixels[4 * i + 3];
-    if (fits) sheet_add(&s->maps[map], cell, pixels, weight);
+    if (fits) sheet_add(&maps[map], cell, pixels, weight);
     mem_free(pixels);
     return fits || err_set("the effect was not prepared for cells of %u pixels", s->cell);
+}
+
+bool sheet_take(roil_sheet *s, sheet *maps, uint32_t cell, float weight) {
+    for (int i = 0; i < SHEET_MAPS; i++)
+        if (maps[i].pixels && s->passes.images[sources[i]].id &&
+            !add_map(s, maps, (sheet_map)i, cell, weight))
+            return false;
+    return true;
 }
 
 bool roil_sheet_add(roil_sheet *s, uint32_t cell, double weight) {
     mem_enter();
     if (cell >= s->columns * s->rows)
         return mem_leave(err_set("cell %u; the sheet has %u", cell, s->columns * s->rows));
-    for (int i = 0; i < SHEET_MAPS; i++)
-        if (s->maps[i].pixels && s->passes.images[sources[i]].id &&
-            !add_map(s, (sheet_map)i, cell, (float)weight))
-            return mem_leave(false);
-    return mem_leave(true);
+    return mem_leave(sheet_take(s, s->maps, cell, (float)weight));
 }
 
 bool roil_sheet_find_used(const roil_sheet *s, uint32_t count, float part[4]) {
-    const sheet *map = &s->maps[s->maps[SHEET_SCENE].pixels ? SHEET_SCENE : SHEET_SHOWN];
-    if (!map->pixels) return err_set("the sheet has no colours");
+    const sheet *linear = &s->maps[SHEET_SCENE], *shown = &s->maps[SHEET_SHOWN];
+    if (!linear->pixels || !shown->pixels) return err_set("the sheet has not both colours");
     const float whole = (float)s->cell;
     float all[4] = {whole, whole, 0, 0}, step[4] = {0}, before[4];
     bool seen = false;
     for (uint32_t i = 0; i < count; i++) {
-        const sheet_area a = sheet_find_used_in(map, i, SHEET_LEAST, 4);
-        const float now[] = {(float)a.left, (float)a.top, (float)a.right, (float)a.bottom};
-        if (a.left >= a.right) continue;
+        const sheet_area a = sheet_find_used_in(linear, i, SHEET_LEAST, 4),
+                         b = sheet_find_used_in(shown, i, SHEET_LEAST, 4);
+        const float now[] = {fminf((float)a.left, (float)b.left), fminf((float)a.top, (float)b.top),
+                             fmaxf((float)a.right, (float)b.right),
+                             fmaxf((float)a.bottom, (float)b.bottom)};
+        if (now[0] >= now[2]) continue;
         for (int k = 0; k < 4; k++) {
             if (seen) step[k] = fmaxf(step[k], fabsf(now[k] - before[k]) / 2);
             all[k] = k < 2 ? fminf(all[k], now[k]) : fmaxf(all[k], now[k]);
@@ -319,6 +331,7 @@ bool roil_sheet_save(roil_sheet *s, const char *file, const roil_sheet_options *
     s->name = path_name(file);
     s->files = json_array();
     s->used = options->count ? options->count : s->columns * s->rows;
+    if (!sheet_blend(s, options->fps)) return mem_leave(false);
     if (s->maps[SHEET_MOTION].pixels && !s->passes.moves &&
         !sheet_find_flow(s, s->used, options->loop > 0, options->fps))
         return mem_leave(false);
@@ -346,6 +359,8 @@ const char *roil_sheet_summary(const roil_sheet *s) {
 void roil_sheet_free(roil_sheet *s) {
     if (!s) return;
     for (int i = 0; i < SHEET_MAPS; i++) sheet_free(&s->maps[i]);
+    for (int i = 0; i < SHEET_MAPS; i++) sheet_free(&s->before[i]);
+    mem_free(s->parts);
     budget_give(s->memory);
     json_decref(s->files);
     json_decref(s->settings);

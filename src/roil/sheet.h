@@ -40,6 +40,11 @@ struct roil_sheet {
     float pivot[2];      // of a cell, 0 to 1 from the top left: where the world's origin is seen
     float axes[3][3];    // in the world: right, up, towards the camera
     budget_part *memory; // of the maps
+    // Of a loop: the last cells, what each becomes, and how far it has.
+    uint32_t fade;
+    sheet before[SHEET_MAPS];
+    float *parts;
+    bool flows; // these are moved onto each other
     // As written.
     sheet_area area;          // of the cell as it was rendered
     uint32_t used;            // cells
@@ -60,6 +65,10 @@ typedef struct sheet_file { // one that is being written: values between 0 and 1
 json_t *sheet_write(roil_sheet *s, const char *file, const char *format, const sheet_file *what);
 bool sheet_write_all(roil_sheet *s, const char *file, const roil_sheet_options *options,
                      const sheet_engine *engine);
+// Adds the last frame, times a weight, to a cell of `maps`.
+bool sheet_take(roil_sheet *s, sheet *maps, uint32_t cell, float weight);
+bool sheet_blend(roil_sheet *s, double fps); // the last cells into what they become
+void sheet_picture(const sheet *s, uint32_t cell, uint8_t *out); // grey, as an eye sees it
 // Fills SHEET_MOTION from the colours of the first `count` cells.
 bool sheet_find_flow(roil_sheet *s, uint32_t count, bool loops, double fps);
 // Returns how it was made as a line of JSON, for one of its files. mem_free

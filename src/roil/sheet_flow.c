@@ -7,7 +7,7 @@
 #include <math.h>
 
 // As an eye sees it, before grey: then both smoke and fire stand out.
-static void picture_of(const sheet *s, uint32_t cell, uint8_t *out) {
+void sheet_picture(const sheet *s, uint32_t cell, uint8_t *out) {
     static const float behind = 0.2f;
     for (uint32_t y = 0; y < s->height; y++)
         for (uint32_t x = 0; x < s->width; x++) {
@@ -26,8 +26,8 @@ typedef struct pair {
 static bool add_way(roil_sheet *s, const sheet *colors, uint32_t cell, uint32_t other, float scale,
                     const pair *p) {
     const sheet *motion = &s->maps[SHEET_MOTION];
-    picture_of(colors, cell, p->from);
-    picture_of(colors, other, p->to);
+    sheet_picture(colors, cell, p->from);
+    sheet_picture(colors, other, p->to);
     if (!optical_flow_find(p->from, p->to, s->cell, s->cell, p->flow)) return false;
     const float *way = p->flow;
     for (uint32_t y = 0; y < s->cell; y++)

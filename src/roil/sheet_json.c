@@ -87,6 +87,10 @@ json_t *sheet_describe(const roil_sheet *s, const char *file, const roil_sheet_o
     json_object_set_new(all, "frames", json_integer(s->used));
     json_object_set_new(all, "fps", json_real(options->fps));
     if (options->loop > 0) json_object_set_new(all, "loop_seconds", json_real(options->loop));
+    if (s->fade)
+        json_object_set_new(all, "dissolve",
+                            json_pack("{s:i, s:s}", "cells", (int)s->fade, "blend",
+                                      s->flows ? "moved along optical flow" : "in place"));
     json_object_set_new(all, "cell", pair(width, height));
     json_object_set_new(all, "gutter", json_integer(s->gutter));
     json_object_set_new(all, "size_m", pair(width * metres, height * metres));

@@ -329,10 +329,35 @@ class Sheets(Case):
         self.export(RISING % ("worley", ""), "--frames", "1,19", *short)
         self.assertGreater(self.apart(self.picture("fire.png"), 8, 0, 1), 5)
 
+    def test_cells_are_framed_by_what_is_seen(self):
+        """Noise less itself is nothing, but not to one who only knows its range."""
+        where = 'sphere { position = {0, 0, 1}, radius = 2 } * smoothstep(0.6, 0.7, sphere { position = {0.5, 0, 1}, ' \
+                'radius = 1, falloff = 0.5 } + perlin { frequency = 2 } - perlin { frequency = 2 })'
+        effect = f"""
+local fx = effect {{ name = "still", fps = 10, frames = 4 }}
+fx.camera = orbit {{ target = {{5, 0, 3}}, distance = 30, yaw = 0, pitch = 0 }}
+fx.output = final {{ march {{ density = {where} * 200, radiance = {{1, 1, 1}}, steps = 64 }}, tonemap = "none" }}.color
+return fx
+"""
+        sizes = []
+        for options in ["--all"], []:
+            told = self.export(effect, *SHORT, "--frames", "1-4", *options)
+            self.assertEqual("--all" in told["made"]["options"], bool(options))
+            scale = 64 / told["size_m"][0]
+            x, y, _ = middle(self.picture("fire.png"), 2, 0)
+            self.assertAlmostEqual(x, 64 * told["pivot"][0] + 0.5 * scale, delta=0.5)
+            self.assertAlmostEqual(y, 64 * told["pivot"][1] - scale, delta=0.5)
+            sizes.append(told["size_m"][0])
+        used = 2 * 1.2 * 64 / 56  # that, with the gutter
+        self.assertGreater(sizes[0], 4)
+        self.assertTrue(0.6 * used < sizes[1] < 1.15 * used, sizes)
+
     def test_what_moves_on_dissolves_into_what_was_before(self):
         told = self.export(RISING % ("worley", ""), "--loop", "1.5", "--grid", "16x1", "--cell", "32")
         self.assertIn("dissolve into what came before the first, since the drift of 'worley' repeats every 2 s",
                       told["notes"][0])
+        blend = "moved along optical flow" if os.path.exists(FLOW) else "in place"
+        self.assertEqual(told["dissolve"], {"cells": 4, "blend": blend})
         sheet = self.picture("fire.png")
         seam, usual = self.apart(sheet, 16, 15, 0), [self.apart(sheet, 16, i, i + 1) for i in range(11)]
         self.assertLess(seam, 1.3 * max(usual))
