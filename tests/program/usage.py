@@ -40,7 +40,7 @@ class Usage(Case):
         self.fails(2, ["unknown command 'rendr'", "did you mean 'render'?"], "rendr")
         self.fails(2, ["'puff.lua' is no command; `roil live puff.lua` shows an effect"], "puff.lua")
         self.fails(2, ["unknown command 'bake'",
-                       "accepted: render, live, new, check, info, export, bench, tune, repro, compare"], "bake")
+                       "accepted: render, live, new, bundle, check, info, export, bench, tune, repro, compare"], "bake")
 
     def test_unknown_option_is_named(self):
         self.fails(2, "--sise", "render", "puff.lua", "--sise", "96x54")
