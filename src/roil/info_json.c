@@ -264,7 +264,7 @@ char *roil_info_params_json(roil_effect *e) {
     json_t *controls = json_array();
     for (size_t i = 0; i < roil_control_count(e); i++)
         json_array_append_new(controls, control_json(e, i));
-    return roil_leave_text(info_finish_json(
-        json_pack("{s:s, s:o, s:o}", "roil", roil_version(), "effect", info_effect_json(&info),
-                  "controls", controls)));
+    return roil_leave_text(
+        info_finish_json(json_pack("{s:s, s:o, s:o}", "roil", roil_version(), "effect",
+                                   info_effect_json(&info), "controls", controls)));
 }

@@ -74,10 +74,12 @@ static hash128 hash_inputs(const pass *p, const kernel *k) {
         shared_vec4 eye, lens, shift, sight, sun, sun_radiance, zenith, horizon, night[2];
         shared_uvec4 size;
         double time;
-    } camera = {f->view,       f->eye,           f->lens,
-                f->shift,      f->sight, f->sun_direction, f->sun_radiance,
-                f->sky_zenith, f->sky_horizon,   {f->night_zenith, f->night_horizon},
-                f->size,       c->time};
+    } camera = {f->view,         f->eye,
+                f->lens,         f->shift,
+                f->sight,        f->sun_direction,
+                f->sun_radiance, f->sky_zenith,
+                f->sky_horizon,  {f->night_zenith, f->night_horizon},
+                f->size,         c->time};
     hash128 all = hash_bytes(&camera, sizeof camera);
     all = hash_combine(all, hash_bytes(p->host->lights, sizeof *p->host->lights));
     all = hash_combine(all, hash_bytes(k->blocks[0], k->block_sizes[0]));
