@@ -59,8 +59,8 @@ int cmd_bundle(int argc, const char **argv) {
                                          APP_ASSETS_ROW(&assets),
                                          APP_MEMORY_ROW(&memory),
                                          POPT_AUTOHELP POPT_TABLEEND};
-    poptContext context = poptGetContext("roil bundle", argc, argv, options, 0);
-    poptSetOtherOptionHelp(context, "EFFECT.lua [-o NAME.roil]");
+    poptContext context =
+        app_options("roil bundle", argc, argv, options, "EFFECT.lua [-o NAME.roil]");
     int code = poptGetNextOpt(context), status;
     const char *effect = poptGetArg(context), *more = poptGetArg(context);
     if (code < -1) {

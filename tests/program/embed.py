@@ -88,7 +88,17 @@ class Embed(Case):
         run("cmake", "--build", build, env=self.environment)
         self.draws(f"{build}/engine_c", LD_LIBRARY_PATH="")
         self.draws(f"{build}/engine_cpp", LD_LIBRARY_PATH="")
+        self.has_effects(f"{build}/engine_vulkan")
         self.draws(f"{build}/engine_archive", ROIL_HOME=f"{self.prefix}/share/roil", ROIL_READER=self.find("roil-reader"))
+
+    def has_effects(self, engine):
+        """An engine with a Vulkan device of its own draws what the one of this build does, which program/host.py looks at."""
+        effects = [os.path.join(os.path.dirname(ENGINE), name) for name in ("far.lua", "near.lua")]
+        pictures = []
+        for program in engine, os.path.join(BINARY, "engine"):
+            run(program, *effects, self.path("engine.pfm"), "3", env={**os.environ, "LD_LIBRARY_PATH": ""})
+            pictures.append(self.read("engine.pfm"))
+        self.assertEqual(*pictures)
 
     def test_as_a_part_of_a_build(self):
         """It can be configured, and needs neither the window nor the options; building all again takes too long."""
@@ -142,7 +152,7 @@ class Embed(Case):
     def test_completion_and_manual_know_every_option(self):
         bash, zsh, page = (self.content(os.path.join(self.prefix, "share", name)).decode() for name in (
             "bash-completion/completions/roil", "zsh/site-functions/_roil", "man/man1/roil.1"))
-        for command in ("render", "live", "new", "check", "info", "export", "export vdb", "export sheet", "bench", "tune",
+        for command in ("render", "live", "new", "check", "info", "export", "export vdb", "export sheet", "bundle", "bench", "tune",
                         "repro", "compare"):
             options = set(re.findall(r"(?m)^  (?:-\w,|   ) (--[a-z0-9-]+)", run(PROGRAM, *command.split(), "--help")))
             line = re.search(rf"'{command}'\) words='(.*)' ;;", bash).group(1).split()

@@ -94,17 +94,18 @@ if(PROJECT_IS_TOP_LEVEL)
   install(FILES ${archive} DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
 endif()
 install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/roil COMPONENT development)
-set(modules "lua5.4 jansson libpng OpenEXR blosc libturbojpeg libxxhash spirv-cross-c-shared vulkan")
+set(modules "lua5.4 jansson libpng zlib OpenEXR blosc libturbojpeg libxxhash spirv-cross-c-shared vulkan")
 include(CMakePackageConfigHelpers)
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/roil)
 install(EXPORT roil NAMESPACE roil:: FILE roil-targets.cmake DESTINATION ${package} COMPONENT development)
-configure_package_config_file(roil-config.cmake.in ${generated}/roil-config.cmake INSTALL_DESTINATION ${package}
+configure_package_config_file(${PROJECT_SOURCE_DIR}/src/roil/roil-config.cmake.in
+                              ${generated}/roil-config.cmake INSTALL_DESTINATION ${package}
                               PATH_VARS CMAKE_INSTALL_LIBDIR CMAKE_INSTALL_INCLUDEDIR)
 write_basic_package_version_file(${generated}/roil-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${generated}/roil-config.cmake ${generated}/roil-config-version.cmake DESTINATION ${package}
         COMPONENT development)
 file(RELATIVE_PATH up /${CMAKE_INSTALL_LIBDIR}/pkgconfig /) # so that the prefix may lie anywhere
-configure_file(roil.pc.in ${generated}/roil.pc @ONLY)
+configure_file(${PROJECT_SOURCE_DIR}/src/roil/roil.pc.in ${generated}/roil.pc @ONLY)
 install(FILES ${generated}/roil.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
 
 # Called once the program is there.
@@ -163,7 +164,7 @@ if(PROJECT_IS_TOP_LEVEL)
   set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
   set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
   set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-  set(CPACK_PRE_BUILD_SCRIPTS ${CMAKE_CURRENT_SOURCE_DIR}/debian.cmake)
+  set(CPACK_PRE_BUILD_SCRIPTS ${PROJECT_SOURCE_DIR}/src/roil/debian.cmake)
   set(exactly "(= ${PROJECT_VERSION})")
   set(CPACK_DEBIAN_ROIL_PACKAGE_NAME roil)
   set(CPACK_DEBIAN_ROIL_PACKAGE_DEPENDS "libroil${abi} ${exactly}")
@@ -174,8 +175,8 @@ if(PROJECT_IS_TOP_LEVEL)
   set(CPACK_DEBIAN_LIBRARY_PACKAGE_SUGGESTS "libavformat59, libavcodec59, libswscale6, libavutil57")
   set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libroil-dev)
   set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
-  string(CONCAT depends "libroil${abi} ${exactly}, liblua5.4-dev, libjansson-dev, libpng-dev, libopenexr-dev, "
-                        "libblosc-dev, libturbojpeg0-dev, libxxhash-dev, libspirv-cross-c-shared-dev, libvulkan-dev")
+  string(CONCAT depends "libroil${abi} ${exactly}, liblua5.4-dev, libjansson-dev, libpng-dev, zlib1g-dev, "
+                        "libopenexr-dev, libblosc-dev, libturbojpeg0-dev, libxxhash-dev, libspirv-cross-c-shared-dev, libvulkan-dev")
   set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS ${depends})
   include(CPack)
   cpack_add_component(program GROUP roil)
