@@ -267,7 +267,7 @@ static void keep_info(owned_inputs *own, const roil_effect *e) {
         if (*texts[i]) *texts[i] = arena_string(&own->memory, *texts[i]);
 }
 
-roil_inputs *roil_collect(roil *r, const char *file) {
+static roil_inputs *collect(roil *r, const char *file) {
     owned_inputs *own = mem_alloc(sizeof *own);
     own->named = arena_string(&own->memory, file);
     roil_effect *e = roil_load(r, file, NULL, 0);
@@ -283,6 +283,13 @@ roil_inputs *roil_collect(roil *r, const char *file) {
     if (done) return &own->inputs;
     roil_free_inputs(&own->inputs);
     return NULL;
+}
+
+roil_inputs *roil_collect(roil *r, const char *file) {
+    mem_enter();
+    roil_inputs *inputs = collect(r, file);
+    LEAVE_WITH(inputs, roil_free_inputs(inputs));
+    return inputs;
 }
 
 void roil_free_inputs(roil_inputs *inputs) {
@@ -310,7 +317,7 @@ static bool write_bundle(const roil_inputs *in, const char *name, const char *fi
     return bundle_end(&d);
 }
 
-bool roil_bundle(roil *r, const roil_inputs *in, const char *file) {
+static bool write_whole(roil *r, const roil_inputs *in, const char *file) {
     char name[BUNDLE_MAX_NAME + 1];
     if (!str_ends_with(file, ".roil")) return err_set("%s: a bundle's name ends with .roil", file);
     size_t length = strlen(in->effect);
@@ -327,4 +334,9 @@ bool roil_bundle(roil *r, const roil_inputs *in, const char *file) {
     return err_prefix("%s would not be whole without the effect's folder (does it read files by "
                       "links?): ",
                       file);
+}
+
+bool roil_bundle(roil *r, const roil_inputs *in, const char *file) {
+    mem_enter();
+    return mem_leave(write_whole(r, in, file));
 }

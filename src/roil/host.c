@@ -8,7 +8,7 @@
 
 // ---- the layer --------------------------------------------------------------------------------
 
-bool roil_make_layer(roil_effect *e, const roil_layer_desc *desc) {
+static bool make_layer(roil_effect *e, const roil_layer_desc *desc) {
     if (e->has_layer) return err_set("%s: the effect is a layer already", effect_file(e->effect));
     if (e->width) return err_set("roil_make_layer comes before roil_prepare");
     if (!effect_add_layer(e->effect, desc ? desc->source : NULL, desc && desc->motion, &e->layer))
@@ -21,6 +21,11 @@ bool roil_make_layer(roil_effect *e, const roil_layer_desc *desc) {
     }
     effect_skip_pictures(e->effect);
     return true;
+}
+
+bool roil_make_layer(roil_effect *e, const roil_layer_desc *desc) {
+    mem_enter();
+    return mem_leave(make_layer(e, desc));
 }
 
 const char *roil_get_layer_image(const roil_effect *e, roil_layer_image image) {
@@ -102,7 +107,7 @@ static bool begin_copy(roil_readback *b, gpu_image *image) {
     return done && ended;
 }
 
-roil_readback *roil_read_begin(roil_effect *e, const char *image) {
+static roil_readback *read_begin(roil_effect *e, const char *image) {
     const graph_image which = image_to_read(e, image);
     gpu_image *source = which.id ? graph_get_image(effect_graph(e->effect), which) : NULL;
     if (image && !which.id) return NULL;
@@ -125,6 +130,13 @@ roil_readback *roil_read_begin(roil_effect *e, const char *image) {
     if (b->buffer && begin_copy(b, source)) return b;
     roil_read_end(b, NULL);
     return NULL;
+}
+
+roil_readback *roil_read_begin(roil_effect *e, const char *image) {
+    mem_enter();
+    roil_readback *b = read_begin(e, image);
+    LEAVE_WITH(b, roil_read_end(b, NULL));
+    return b;
 }
 
 bool roil_read_ready(roil_readback *b) {
