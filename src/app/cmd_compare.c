@@ -4,6 +4,8 @@
 #include "base/budget.h"
 #include "base/error.h"
 #include "base/file.h"
+#include "base/json_text.h"
+#include "base/memory.h"
 #include "base/str.h"
 #include <jansson.h>
 #include <math.h>
@@ -31,11 +33,11 @@ static bool save_difference(const compare_job *job, const roil_difference *d) {
     json_t *root = json_pack("{s:s, s:s, s:s, s:i, s:i, s:o, s:f, s:f}", "roil", roil_version(),
                              "a", job->how.a, "b", job->how.b, "width", (int)d->width, "height",
                              (int)d->height, "psnr", psnr, "ssim", d->ssim, "flip", d->flip);
-    char *text = root ? json_dumps(root, JSON_INDENT(1) | JSON_REAL_PRECISION(9)) : NULL;
+    char *text = root ? json_text(root, JSON_INDENT(1) | JSON_REAL_PRECISION(9)) : NULL;
     json_decref(root);
     if (!text) return err_set("%s: the figures cannot be written as JSON", job->json);
     bool done = file_make_parent_folders(job->json) && file_write(job->json, text, strlen(text));
-    free(text);
+    mem_free(text);
     return done;
 }
 

@@ -1,6 +1,8 @@
 // What commands print for programs, with --json.
 #include "app/app.h"
 #include "base/error.h"
+#include "base/json_text.h"
+#include "base/memory.h"
 #include "base/str.h"
 #include <jansson.h>
 #include <stdlib.h>
@@ -28,9 +30,9 @@ json_t *app_error_json(const roil *r, const char *file) {
 }
 
 int app_print_json(json_t *root, int status) {
-    char *text = json_dumps(root, JSON_INDENT(1));
+    char *text = json_text(root, JSON_INDENT(1));
     json_decref(root);
     puts(text ? text : "{}");
-    free(text);
+    mem_free(text);
     return status;
 }

@@ -1,6 +1,7 @@
 #include "app/pulse.h"
 #include "base/error.h"
 #include "base/file.h"
+#include "base/json_text.h"
 #include "base/memory.h"
 #include "base/statistics.h"
 #include <jansson.h>
@@ -51,10 +52,10 @@ bool pulse_save(const pulse *p, const char *file, uint64_t drawn) {
                              p->busy_seconds, "pictures", (json_int_t)p->busy_shown,
                              "pictures_a_second", rate, "answers", "count", (json_int_t)p->answered,
                              "median_ms", a.median, "p95_ms", a.p95, "longest_ms", a.longest);
-    char *text = root ? json_dumps(root, JSON_INDENT(1) | JSON_REAL_PRECISION(6)) : NULL;
+    char *text = root ? json_text(root, JSON_INDENT(1) | JSON_REAL_PRECISION(6)) : NULL;
     json_decref(root);
     if (!text) return err_set("%s: the statistics cannot be written as JSON", file);
     bool done = file_make_parent_folders(file) && file_write(file, text, strlen(text));
-    free(text);
+    mem_free(text);
     return done;
 }

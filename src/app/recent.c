@@ -1,6 +1,7 @@
 #include "app/recent.h"
 #include "app/live.h"
 #include "base/hash.h"
+#include "base/json_text.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/str.h"
@@ -49,11 +50,11 @@ void recent_add(const char *file, roil_effect *e) {
     json_array_append_new(root, json_string(real));
     for (size_t i = 0; i < count && json_array_size(root) < RECENT_MOST; i++)
         if (strcmp(before[i], real) != 0) json_array_append_new(root, json_string(before[i]));
-    char *text = json_dumps(root, JSON_INDENT(1));
+    char *text = json_text(root, JSON_INDENT(1));
     if (text &&
         (!session_file(path, sizeof path, "recent.json") || !file_write(path, text, strlen(text))))
         log_write(LOG_DEBUG, "live: %s", roil_error());
-    free(text);
+    mem_free(text);
     json_decref(root);
     if (kept_picture(real, path) && !roil_save(e, path, NULL))
         log_write(LOG_DEBUG, "live: %s", roil_error());

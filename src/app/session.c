@@ -3,6 +3,7 @@
 #include "app/live.h"
 #include "base/error.h"
 #include "base/file.h"
+#include "base/json_text.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/str.h"
@@ -97,10 +98,10 @@ void session_save(const live_session *s) {
         "inspector", s->inspector, "slices", s->slices, "handles", s->handles, "ground", s->ground,
         "probe", s->probe, "graph", s->graph, "contrast", s->contrast, "scale", (double)s->scale,
         "image", s->image, "preview", s->preview);
-    char *text = root ? json_dumps(root, JSON_INDENT(2) | JSON_REAL_PRECISION(6)) : NULL;
+    char *text = root ? json_text(root, JSON_INDENT(2) | JSON_REAL_PRECISION(6)) : NULL;
     if (text &&
         (!session_file(path, sizeof path, "session.json") || !file_write(path, text, strlen(text))))
         log_write(LOG_WARNING, "the window's place is not kept: %s", err_get());
-    free(text);
+    mem_free(text);
     json_decref(root);
 }

@@ -3,6 +3,7 @@
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/file.h"
+#include "base/json_text.h"
 #include "base/memory.h"
 #include "base/statistics.h"
 #include "base/str.h"
@@ -213,10 +214,10 @@ bool app_stats_save(const app_stats *s, const char *file, const roil *r, const c
     json_object_set_new(root, "frames", frames);
     if (s->readout_count) json_object_set_new(root, "readouts", readouts_json(s));
     if (s->plays) json_object_set_new(root, "sequences", playback_json(s));
-    char *text = json_dumps(root, JSON_INDENT(1) | JSON_REAL_PRECISION(6));
+    char *text = json_text(root, JSON_INDENT(1) | JSON_REAL_PRECISION(6));
     json_decref(root);
     if (!text) return err_set("%s: the statistics cannot be written as JSON", file);
     bool done = file_make_parent_folders(file) && file_write(file, text, strlen(text));
-    free(text);
+    mem_free(text);
     return done;
 }

@@ -1,6 +1,8 @@
 // Results as results.json.
 #include "base/error.h"
 #include "base/file.h"
+#include "base/json_text.h"
+#include "base/memory.h"
 #include "bench/json.h"
 #include "bench/results.h"
 #include <math.h>
@@ -168,7 +170,7 @@ json_t *bench_to_tree(const bench_results *r) {
 
 char *bench_to_json(const bench_results *r) {
     json_t *all = bench_to_tree(r);
-    char *json = json_dumps(all, JSON_INDENT(1) | JSON_REAL_PRECISION(DIGITS));
+    char *json = json_text(all, JSON_INDENT(1) | JSON_REAL_PRECISION(DIGITS));
     json_decref(all);
     return json;
 }
@@ -179,6 +181,6 @@ bool bench_write(const bench_results *r, const char *folder) {
     char *json = bench_to_json(r);
     if (!json) return err_set("%s: the results cannot be written as JSON", path);
     bool done = file_make_folders(folder) && file_write_inside(folder, path, json, strlen(json));
-    free(json);
+    mem_free(json);
     return done && bench_write_csv(r, folder);
 }

@@ -2,6 +2,7 @@
 // that tests hold them against.
 #include "base/error.h"
 #include "base/file.h"
+#include "base/json_text.h"
 #include "base/memory.h"
 #include "roil/info.h"
 #include <stdlib.h>
@@ -81,7 +82,7 @@ char *roil_info_effects_json(roil *r) {
     json_t *all = effects_tree(r);
     if (!all) return roil_leave_text(NULL);
     json_t *root = json_pack("{s:s, s:o}", "roil", roil_version(), "effects", all);
-    char *text = json_dumps(root, JSON_INDENT(1));
+    char *text = json_text(root, JSON_INDENT(1));
     json_decref(root);
     return roil_leave_text(text);
 }

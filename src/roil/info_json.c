@@ -1,5 +1,6 @@
 // The reference as JSON, from the tables that the library itself uses.
 #include "base/error.h"
+#include "base/json_text.h"
 #include "base/memory.h"
 #include "roil/info.h"
 #include "roil/sheet.h"
@@ -9,12 +10,10 @@
 #include <string.h>
 
 char *info_finish_json(json_t *root) {
-    char *text = json_dumps(root, JSON_INDENT(1) | JSON_REAL_PRECISION(7));
+    char *text = json_text(root, JSON_INDENT(1) | JSON_REAL_PRECISION(7));
     json_decref(root);
     if (!text) err_set("the reference cannot be written as JSON");
-    char *own = text ? mem_copy(text, strlen(text) + 1) : NULL; // from the host's allocator
-    free(text);
-    return own;
+    return text;
 }
 
 // ---- values -----------------------------------------------------------------------------------

@@ -2,6 +2,7 @@
 // files that may be a stranger's.
 #include "base/error.h"
 #include "base/hash.h"
+#include "base/json_text.h"
 #include "base/memory.h"
 #include "base/str.h"
 #include "effect/recipe.h"
@@ -95,7 +96,7 @@ char *roil_describe(roil_effect *e, const roil_making *how) {
         roil_device_driver(e->owner), "inputs", roil_hash_inputs(e));
     if (how->sheet) json_object_set_new(root, "sheet", json_string(how->sheet));
     if (how->part) json_object_set_new(root, "part", json_string(how->part));
-    char *text = root ? json_dumps(root, JSON_COMPACT | JSON_ENSURE_ASCII) : NULL;
+    char *text = root ? json_text(root, JSON_COMPACT | JSON_ENSURE_ASCII) : NULL;
     json_decref(root);
     return text;
 }

@@ -3,6 +3,7 @@
 #include "roil/sheet.h"
 #include "base/budget.h"
 #include "base/error.h"
+#include "base/json_text.h"
 #include "base/memory.h"
 #include "media/optical_flow.h"
 #include <math.h>
@@ -340,12 +341,12 @@ bool roil_sheet_save(roil_sheet *s, const char *file, const roil_sheet_options *
     strbuf path = {0};
     sheet_stem(file, &path);
     strbuf_add(&path, ".json");
-    char *text = json_dumps(description, JSON_INDENT(2) | JSON_REAL_PRECISION(7));
+    char *text = json_text(description, JSON_INDENT(2) | JSON_REAL_PRECISION(7));
     strbuf whole = {0};
     if (text) sheet_add_recipe(s, strbuf_text(&path), text, &whole);
     bool done = text && file_write(strbuf_text(&path), whole.text, whole.length) &&
                 (!options->page || sheet_write_page(s, options->page, file, description));
-    free(text);
+    mem_free(text);
     strbuf_free(&whole);
     strbuf_free(&path);
     json_decref(description);

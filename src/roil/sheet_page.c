@@ -1,6 +1,7 @@
 // The page of a sheet: one HTML file with the description and the pictures inside, made of
 // scripts/sheet/page.html.
 #include "base/error.h"
+#include "base/json_text.h"
 #include "base/memory.h"
 #include "roil/sheet.h"
 #include <string.h>
@@ -26,14 +27,14 @@ static void add_base64(strbuf *out, const uint8_t *data, size_t size) {
 
 // "</script>" in a name would end the element that the text stands in.
 static void add_json(strbuf *out, const json_t *value) {
-    char *text = json_dumps(value, JSON_COMPACT | JSON_ENCODE_ANY | JSON_REAL_PRECISION(7));
+    char *text = json_text(value, JSON_COMPACT | JSON_ENCODE_ANY | JSON_REAL_PRECISION(7));
     for (const char *at = text; at && *at; at++) {
         if (*at == '<')
             strbuf_add(out, "\\u003c");
         else
             strbuf_append(out, at, 1);
     }
-    free(text);
+    mem_free(text);
 }
 
 static bool add_picture(const char *folder, const json_t *name, strbuf *out) {

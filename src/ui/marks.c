@@ -2,6 +2,7 @@
 // name. A name is the innermost ui_push and the widget's own id, except for "##value", in lower
 // case: "density", "fire/ramp", "search".
 #include "base/file.h"
+#include "base/json_text.h"
 #include "base/memory.h"
 #include "base/str.h"
 #include "ui/parts.h"
@@ -51,19 +52,19 @@ void ui_mark(const char *name, ui_rect area) {
 
 void marks_write(void) {
     if (!marks.now) return;
-    char *text = json_dumps(marks.now, JSON_INDENT(1));
+    char *text = json_text(marks.now, JSON_INDENT(1));
     if (text && (!marks.written || strcmp(text, marks.written) != 0)) {
         file_write(file(), text, strlen(text));
-        free(marks.written);
+        mem_free(marks.written);
         marks.written = text;
     } else {
-        free(text);
+        mem_free(text);
     }
     json_decref(marks.now);
     marks.now = NULL;
 }
 
 void marks_free(void) {
-    free(marks.written);
+    mem_free(marks.written);
     marks.written = NULL;
 }

@@ -2,6 +2,7 @@
 // same; all else has a message.
 #include "base/error.h"
 #include "base/file.h"
+#include "base/memory.h"
 #include "bench/json.h"
 #include <ctype.h>
 #include <stdlib.h>
@@ -39,8 +40,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
         require_clean(&r);
         char *one = bench_to_json(&r), *two = one ? again(one) : NULL;
         if (!two || strcmp(one, two) != 0) abort();
-        free(one);
-        free(two);
+        mem_free(one);
+        mem_free(two);
     } else if (!err_get()[0]) {
         abort();
     }
