@@ -150,7 +150,13 @@ class Simulations(Case):
     def settled(self, live):
         live.expect("live: shown")
         live.wait_until(lambda: "work" not in live.widgets(), "the end of the work")
-        return self.picture(live)
+        last = [None]
+
+        def stays():
+            now = self.picture(live)
+            same, last[0] = last[0] is not None and difference(last[0], now) == 0, now
+            return now if same else None
+        return live.wait_until(stays, "a picture that stays")
 
     def go_on(self, live, frames):
         for frame in frames:
