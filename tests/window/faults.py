@@ -66,8 +66,8 @@ class Faults(Case):
                               timeout=PATIENCE).stdout
 
     def test_a_frame_without_end_can_be_given_up(self):
-        live = self.hang()
-        live.keys("Escape")
+        live = self.hang()  # for twice as long as the frame before it, Escape waits for it
+        live.wait_until(lambda: "given up while it worked" in live.text() or live.keys("Escape"), "an end")
         live.expect("it was given up while it worked.*the program restarts")
         live.expect("live: took over")  # the file as it was
         mark = live.mark()
