@@ -1,4 +1,5 @@
 // What simulated air is given: sources, meshes, pushes.
+#include "long_test.h"
 #include "roil_air_test.h"
 
 static void smoke_is_where_its_source_is_and_rises(void **state) {
@@ -73,6 +74,7 @@ static void smoke_heat_and_dye_are_told_apart(void **state) {
 }
 
 static void a_field_pushes_the_air(void **state) {
+    if (!sim_long_tests("a force that is a field")) return; // gpu/roil_checkpoint has one, too
     picture still, pushed;
     roil_effect *a = open(*state, 24, "buoyancy_density = 0", "");
     roil_effect *b = open(*state, 24, "force = vec(-8 * step(0, position.z), 0, 0)", "");
@@ -136,6 +138,7 @@ static void meshes_give_smoke_and_stand_in_its_way(void **state) {
 
 // Two sources in the same place: one gives smoke, and the other heat, which makes it rise.
 static void meshes_of_sources_may_meet(void **state) {
+    if (!sim_long_tests("meshes of sources that meet")) return;
     static const char place[] = "mesh { 'cube.obj', scale = 0.2, position = {-0.5, 0, 0.5} }";
     char path[512], more[512];
     picture p;
@@ -152,6 +155,7 @@ static void meshes_of_sources_may_meet(void **state) {
 
 // A mesh that lies in one plane has cells too, though its box is of no size.
 static void sheets_give_smoke_and_stand_in_its_way(void **state) {
+    if (!sim_long_tests("meshes that lie in one plane")) return;
     static const char sheet[] = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n";
     picture p;
     roil_simulation s;

@@ -24,10 +24,6 @@ static const char AIR[] =
 
 // What moves besides the noise of the source.
 static const char FORCE[] = "force = curl { frequency = 1, speed = 3 } * 4";
-static const char COLLIDER[] =
-    "air:collider { mesh { 'beam.obj', position = curve { {0, {-0.5, 0, 1}}, {0.05, {-0.2, 0, 1}}, "
-    "{0.2, {0.5, 0, 1}} } } }";
-
 static const char STIRRED[] =
     "air:collider { mesh { 'beam.obj', position = curve { {0, {-0.5, 0, 1}}, {0.05, {-0.2, 0, 1}}, "
     "{0.2, {0.5, 0, 1}} } } }\n"
@@ -101,13 +97,13 @@ static void a_restored_run_is_the_one_that_never_stopped(void **state) {
 // Nothing is stepped for it, so that nothing but the restored state can be looked over and shown.
 static void the_frame_of_a_checkpoint_is_shown_again(void **state) {
     picture first, fourth, again;
-    roil_effect *e = open(*state, "0.1", FORCE, COLLIDER);
+    roil_effect *e = open(*state, "0.1", FORCE, STIRRED);
     draw(e, 1, 1, first);
     draw(e, 2, 4, fourth);
     assert_memory_not_equal(first, fourth, sizeof first);
     ok(roil_checkpoint(e, in_folder("fourth")));
     roil_unload(e);
-    e = open(*state, "0.1", FORCE, COLLIDER);
+    e = open(*state, "0.1", FORCE, STIRRED);
     ok(roil_restore(e, in_folder("fourth"), NULL));
     draw(e, 4, 4, again);
     assert_memory_equal(fourth, again, sizeof again);
@@ -116,11 +112,11 @@ static void the_frame_of_a_checkpoint_is_shown_again(void **state) {
 
 static void what_does_not_fit_is_refused(void **state) {
     picture first, second;
-    roil_effect *e = open(*state, "0.1", "", "");
+    roil_effect *e = open(*state, "0.1", FORCE, STIRRED);
     expect_error(roil_checkpoint(e, in_folder("a")), "nothing is simulated yet");
     draw(e, 1, 2, first);
     ok(roil_checkpoint(e, in_folder("a")));
-    roil_effect *other = open(*state, "0.2", "", "");
+    roil_effect *other = open(*state, "0.2", FORCE, STIRRED);
     expect_error(roil_restore(other, in_folder("a"), NULL),
                  "made with voxel_size = 0.1, the effect has voxel_size = 0.2");
     roil_unload(other);

@@ -1,9 +1,15 @@
-// Eddies leave a cylinder and take its drag, in single precision. With ROIL_LONG_TESTS=1 a finer
-// one, too.
+// Eddies leave a cylinder and take its drag. With ROIL_LONG_TESTS=1 in half precision, and from a
+// finer one, too.
 #include "sim_cylinder_test.h"
 
 static void eddies_leave_a_cylinder_and_take_its_drag(void **state) {
     const eddies e = run(*state, 8, LBM_F32, 60, 4);
+    cylinder_check(&e, 8);
+}
+
+static void so_they_do_in_half_precision(void **state) {
+    if (!sim_long_tests("a cylinder in half precision")) return;
+    const eddies e = run(*state, 8, LBM_F16, 60, 4);
     cylinder_check(&e, 8);
 }
 
@@ -23,6 +29,7 @@ static void a_finer_cylinder_has_less_drag(void **state) {
 int main(void) {
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(eddies_leave_a_cylinder_and_take_its_drag),
+        cmocka_unit_test(so_they_do_in_half_precision),
         cmocka_unit_test(a_finer_cylinder_has_less_drag),
     };
     return gpu_test_run(tests, COUNT_OF(tests));

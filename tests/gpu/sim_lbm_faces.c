@@ -124,7 +124,7 @@ static double flow_through(const sim_world *w, int x) {
 // A duct that air is blown into at one end and leaves at the other.
 static void what_flows_in_flows_out(void **state) {
     sim_world w;
-    enum { LENGTH = 96, HEIGHT = 16 };
+    enum { LENGTH = 64, HEIGHT = 16 };
     sim_open(&w, *state,
              &(lbm_desc){.size = {LENGTH, 4, HEIGHT},
                          .collision = LBM_CENTRAL_MOMENTS,
@@ -134,7 +134,7 @@ static void what_flows_in_flows_out(void **state) {
     w.numbers.inflow[0][0] = 0.04f;
     w.numbers.inflow_scalar[0][0] = 1;
     sim_reset(&w);
-    sim_run(&w, 8000);
+    sim_run(&w, 4000);
     sim_read(&w);
     double in = flow_through(&w, 1), out = flow_through(&w, LENGTH - 2), error = 0;
     double outside = w.state[sim_index(&w, LENGTH - 2, 1, HEIGHT / 2)].density - 1, carried = 0;
@@ -169,7 +169,7 @@ static void wind_blows_through_open_faces(void **state) {
     w.numbers.ambient[0] = 0.25f;
     for (int face = 0; face < 6; face++) w.numbers.inflow[face][0] = 0.05f;
     sim_reset(&w);
-    sim_run(&w, 4000);
+    sim_run(&w, 2000);
     sim_read(&w);
     double least = 1, most = 0, drift = 0;
     for (int z = RIM; z < SIDE - RIM; z++)

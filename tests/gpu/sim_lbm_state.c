@@ -1,4 +1,5 @@
 // The state of a solver: what it conserves, what is kept of it for others.
+#include "long_test.h"
 #include "sim_test.h"
 
 // ---- what stays -------------------------------------------------------------------------------
@@ -48,12 +49,13 @@ static drift drift_of(gpu *g, lbm_precision precision, lbm_face face) {
 }
 
 static void mass_and_momentum_stay_for_ten_thousand_steps(void **state) {
-    drift d = drift_of(*state, LBM_F32, LBM_PERIODIC);
+    drift d = drift_of(*state, LBM_F16, LBM_PERIODIC);
+    assert_true(fabs(d.mass) < 1e-4 && fabs(d.scalar) < 1e-2 && d.momentum < 2.4e-4);
+    if (!sim_long_tests("ten thousand steps in single precision, and between walls")) return;
+    d = drift_of(*state, LBM_F32, LBM_PERIODIC);
     assert_true(fabs(d.mass) < 1e-8 && fabs(d.scalar) < 2e-7 && d.momentum < 1e-6);
     d = drift_of(*state, LBM_F32, LBM_WALL);
     assert_true(fabs(d.mass) < 1e-8 && fabs(d.scalar) < 2e-7);
-    d = drift_of(*state, LBM_F16, LBM_PERIODIC);
-    assert_true(fabs(d.mass) < 1e-4 && fabs(d.scalar) < 1e-2 && d.momentum < 2.4e-4);
     d = drift_of(*state, LBM_F16, LBM_WALL);
     assert_true(fabs(d.mass) < 2e-5 && fabs(d.scalar) < 6e-3);
 }
@@ -128,10 +130,10 @@ static void step_kept(sim_world *w) {
     gpu_test_ok(gpu_idle(w->device));
 }
 
-// D3Q27 at 128^3 in 32 bits: more than lavapipe can bind at once.
+// D3Q27 at 128 x 128 x 80 in 32 bits: more than lavapipe can bind at once.
 static void a_state_in_several_buffers_works(void **state) {
     sim_world w;
-    sim_open(&w, *state, &(lbm_desc){.size = {128, 128, 128}, .set = LBM_D3Q27, .scalars = 1});
+    sim_open(&w, *state, &(lbm_desc){.size = {128, 128, 80}, .set = LBM_D3Q27, .scalars = 1});
     w.numbers.acceleration[0] = 1e-3f;
     w.numbers.ambient[0] = 0.5f;
     w.numbers.buoyancy[0][2] = 1;

@@ -1,5 +1,6 @@
 // What the gas carries keeps its mass and its shape, however it moves.
 #include "base/memory.h"
+#include "long_test.h"
 #include "pyro_test.h"
 
 static const double pi = 3.14159265358979;
@@ -35,7 +36,7 @@ static void check_patch(gpu *g, bool half) {
 
 static void a_warm_patch_on_the_floor_keeps_its_heat(void **state) {
     check_patch(*state, false);
-    check_patch(*state, true);
+    if (sim_long_tests("a patch with half the velocity")) check_patch(*state, true);
 }
 
 // ---- around a box ------------------------------------------------------------------------------

@@ -36,8 +36,8 @@ static const row rows[] = {
     {"closed", {32, 32, 32}, {PYRO_WALL, PYRO_WALL, PYRO_WALL, PYRO_WALL, PYRO_WALL, PYRO_WALL}},
     {"around", {32, 32, 32}, {3, 3, 3, 3, 3, 3}},
     {"a duct", {64, 16, 24}, {PYRO_INFLOW, PYRO_OPEN, PYRO_WALL, PYRO_WALL, PYRO_WALL, PYRO_WALL}},
-    {"odd", {72, 56, 40}, {[4] = PYRO_WALL}},
-    {"halved along two axes alone at the end", {56, 80, 144}, {[4] = PYRO_WALL}},
+    {"odd", {40, 56, 24}, {[4] = PYRO_WALL}},
+    {"halved along two axes alone at the end", {24, 48, 80}, {[4] = PYRO_WALL}},
 };
 
 // The greatest divergence that is left, by the greatest that there was.

@@ -57,7 +57,7 @@ class Workshop:
     def run(self, mutant, changed):
         """What became of its test: passed, failed, or a word for what else happened."""
         folder = self.make(mutant.program) if mutant.path.endswith(".c") else self.build
-        environment = dict(os.environ, ROIL_SOURCE_DIR=self.source, ROIL_BINARY_DIR=folder,
+        environment = dict(os.environ, ROIL_LONG_TESTS="1", ROIL_SOURCE_DIR=self.source, ROIL_BINARY_DIR=folder,
                            ROIL_TEST_DATA=os.path.join(self.source, "tests"), ROIL_TEST=mutant.test,
                            ROIL_CACHE_DIR=os.path.join(self.build, "mutants", "cache"))
         try:
