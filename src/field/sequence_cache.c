@@ -87,8 +87,17 @@ static sequence_slot *take_slot(sequence_data *s, gpu *g, uint64_t bytes) {
     sequence_cache *c = &s->cache;
     if (bytes > c->counts.largest_bytes) c->counts.largest_bytes = bytes;
     slots_use use = look_at_slots(c);
+    bool wanted = use.unused && (all_fit(s) || use.count < few);
     bool room = sequence_may_prepare(g, bytes);
-    if (use.unused && ((room && (all_fit(s) || use.count < few)) || !use.oldest)) return use.unused;
+    if (wanted && !room && !c->limited) {
+        c->limited = true;
+        log_write(
+            LOG_INFO,
+            "%s: memory is there for %zu frames on the device; others are brought there again "
+            "when they are shown",
+            s->name, use.count);
+    }
+    if (use.unused && ((room && wanted) || !use.oldest)) return use.unused;
     while (!all_fit(s) && use.count > few && use.oldest) { // kept while smaller ones would have fit
         sequence_slot *freed = use.oldest;
         sequence_slot_free(freed, g);

@@ -100,7 +100,8 @@ typedef struct sequence_cache {
     sequence_jobs jobs;
     gpu_transfer *idle[SEQUENCE_TRANSFERS]; // to be used again
     field_playback counts;
-    bool warned; // of values that are not finite
+    bool warned;  // of values that are not finite
+    bool limited; // by the device's memory, which was told
 } sequence_cache;
 
 typedef struct sequence_data {

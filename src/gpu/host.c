@@ -154,8 +154,14 @@ void vk_host_add_syncs(gpu *g, VkSemaphoreSubmitInfo *waits, uint32_t *wait_coun
 
 // ---- images -----------------------------------------------------------------------------------
 
-static VkImageAspectFlags aspect_of(int format) {
-    switch (format) {
+static bool is_of_depth_alone(int layout) {
+    return layout == VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL ||
+           layout == VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_OPTIMAL;
+}
+
+// What of the image changes its layout. A stencil does so too, unless it has a layout of its own.
+static VkImageAspectFlags aspect_of(const gpu_host_image *image) {
+    switch (image->format) {
     case VK_FORMAT_D16_UNORM:
     case VK_FORMAT_X8_D24_UNORM_PACK32:
     case VK_FORMAT_D32_SFLOAT:
@@ -163,6 +169,8 @@ static VkImageAspectFlags aspect_of(int format) {
     case VK_FORMAT_D16_UNORM_S8_UINT:
     case VK_FORMAT_D24_UNORM_S8_UINT:
     case VK_FORMAT_D32_SFLOAT_S8_UINT:
+        if (is_of_depth_alone(image->before) || is_of_depth_alone(image->after))
+            return VK_IMAGE_ASPECT_DEPTH_BIT;
         return VK_IMAGE_ASPECT_DEPTH_BIT | VK_IMAGE_ASPECT_STENCIL_BIT;
     default:
         return VK_IMAGE_ASPECT_COLOR_BIT;
@@ -184,8 +192,7 @@ static void record(gpu *g, const gpu_host_image *image, VkImageLayout from, VkIm
         .srcQueueFamilyIndex = leaves ? g->family : VK_QUEUE_FAMILY_IGNORED,
         .dstQueueFamilyIndex = leaves ? VK_QUEUE_FAMILY_EXTERNAL : VK_QUEUE_FAMILY_IGNORED,
         .image = (VkImage)(uintptr_t)image->image,
-        .subresourceRange = {
-            .aspectMask = aspect_of(image->format), .levelCount = 1, .layerCount = 1}};
+        .subresourceRange = {.aspectMask = aspect_of(image), .levelCount = 1, .layerCount = 1}};
     VkDependencyInfo info = {.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
                              .imageMemoryBarrierCount = 1,
                              .pImageMemoryBarriers = &barrier};
@@ -205,7 +212,7 @@ static bool create_view(gpu *g, gpu_image *image, int format) {
 }
 
 gpu_image *gpu_image_borrow(gpu *g, const gpu_host_image *from) {
-    if (!(aspect_of(from->format) & VK_IMAGE_ASPECT_DEPTH_BIT)) {
+    if (!(aspect_of(from) & VK_IMAGE_ASPECT_DEPTH_BIT)) {
         err_set("the host's %s: Vulkan format %d is no format of depths", from->label,
                 from->format);
         return NULL;
@@ -222,7 +229,7 @@ gpu_image *gpu_image_borrow(gpu *g, const gpu_host_image *from) {
                                    .mips = 1,
                                    .use = GPU_USE_SAMPLED};
     image->handle = (VkImage)(uintptr_t)from->image;
-    image->aspect = aspect_of(from->format);
+    image->aspect = aspect_of(from);
     image->borrowed = true;
     // Whatever the host did with it: the first use waits for all that was submitted before.
     image->tracked[0].state = (hazard_state){.write_stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
@@ -239,10 +246,14 @@ void gpu_image_give_back(gpu *g, gpu_image *borrowed, const gpu_host_image *to) 
     gpu_image_destroy(g, borrowed);
 }
 
+// Nothing converts colours to depths or whole numbers. The latter are never filtered or blended.
 static bool can_blit(gpu *g, const gpu_image_desc *from, const gpu_host_image *to) {
+    const VkFormatFeatureFlags fractions = VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT |
+                                           VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BLEND_BIT;
     VkFormatProperties p;
     g->vk.GetPhysicalDeviceFormatProperties(g->physical, (VkFormat)to->format, &p);
     return ((p.optimalTilingFeatures & VK_FORMAT_FEATURE_BLIT_DST_BIT) &&
+            (p.optimalTilingFeatures & fractions) && aspect_of(to) == VK_IMAGE_ASPECT_COLOR_BIT &&
             (g->format_features[from->format] & VK_FORMAT_FEATURE_BLIT_SRC_BIT)) ||
            err_set("the host's %s: the device cannot convert %s to Vulkan format %d", to->label,
                    gpu_format_name(from->format), to->format);

@@ -261,6 +261,36 @@ static void pictures_are_read_without_waiting(void **state) {
     roil_unload(e);
 }
 
+static void what_is_not_in_a_layer_is_said(void **state) {
+    roil_effect *e = load_text(*state, "crowd.lua",
+                               "local fx = effect { name = 'crowd' }\n"
+                               "local b = sphere { radius = 1 }\n"
+                               "local smoke = march { density = b }\n"
+                               "local haze = march { name = 'haze', density = b * 0.1 }\n"
+                               "local p = particles { count = 16, rate = 10, lifetime = 1 }\n"
+                               "local sparks = splats { name = 'sparks', from = p }\n"
+                               "fx.output = final { over { sparks, haze } }.color\n"
+                               "return fx\n");
+    test_listen(ROIL_WARNING);
+    ok(roil_make_layer(e, &(roil_layer_desc){.source = "march"}));
+    roil_set_log(NULL, NULL, ROIL_WARNING);
+    assert_non_null(strstr(test_said,
+                           "crowd.lua: a layer shows the medium of 'march' alone; it leaves "
+                           "out 'haze', 'sparks'"));
+    expect_error(roil_set_samples(e, 2, 0), "are not averaged");
+    roil_unload(e);
+    e = load_text(*state, "ball.lua", ball);
+    test_listen(ROIL_WARNING);
+    ok(roil_make_layer(e, NULL));
+    roil_set_log(NULL, NULL, ROIL_WARNING);
+    assert_string_equal(test_said, "");
+    roil_unload(e);
+    e = load_text(*state, "ball.lua", ball);
+    ok(roil_set_samples(e, 2, 0));
+    expect_error(roil_make_layer(e, NULL), "are not averaged");
+    roil_unload(e);
+}
+
 static void what_a_host_gets_wrong_is_said(void **state) {
     roil_effect *e = load_text(*state, "ball.lua", ball);
     roil_view v = straight();
@@ -293,6 +323,7 @@ int main(void) {
         cmocka_unit_test(motion_has_that_of_the_medium),
         cmocka_unit_test(lights_are_those_of_the_host),
         cmocka_unit_test(pictures_are_read_without_waiting),
+        cmocka_unit_test(what_is_not_in_a_layer_is_said),
         cmocka_unit_test(what_a_host_gets_wrong_is_said),
     };
     return test_run(tests);

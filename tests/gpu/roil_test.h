@@ -63,6 +63,20 @@ static inline roil_effect *load_text(roil *r, const char *name, const char *text
     return e;
 }
 
+static char test_said[512]; // the last message of the log
+
+static inline void test_hear(void *user, int level, const char *text) {
+    if (level == *(const int *)user) snprintf(test_said, sizeof test_said, "%s", text);
+}
+
+// Hears messages of a level, until roil_set_log.
+static inline void test_listen(int level) {
+    static int wanted;
+    wanted = level;
+    test_said[0] = '\0';
+    roil_set_log(test_hear, &wanted, (roil_level)level);
+}
+
 static inline void expect_error(bool result, const char *part) {
     assert_false(result);
     if (!strstr(roil_error(), part)) fail_msg("'%s' does not say '%s'", roil_error(), part);
