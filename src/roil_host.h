@@ -34,8 +34,10 @@ typedef enum roil_layer_image {
 } roil_layer_image;
 
 // Makes the effect draw the medium of a march alone, before no mesh, sky or sprite of its own and
-// without bloom or tone mapping, into the images of a layer. Call it after roil_load and before
-// roil_prepare, once. False with a message: it has no such pass.
+// without bloom or tone mapping, into the images of a layer. A warning in the log names what else
+// it would draw: other marches and stacks, sprites, shells, glows, meshes and their pieces. Call it
+// after roil_load and before roil_prepare, once. False with a message: it has no such pass, or its
+// frames are averages (roil_set_samples).
 bool roil_make_layer(roil_effect *e, const roil_layer_desc *desc);
 // Returns the name of an image of the layer, as roil_keep and roil_read_begin take it; NULL with a
 // message: there is none.

@@ -1,6 +1,7 @@
 // An effect as a layer of a host's picture: its medium alone, seen by the host's camera, behind the
 // host's walls and in the host's light. The host composes it.
 #include "base/error.h"
+#include "base/log.h"
 #include "base/memory.h"
 #include "effect/effect_impl.h"
 #include <math.h>
@@ -74,6 +75,21 @@ bool effect_fill_lights(effect *e, struct light_block *out) {
 
 // ---- passes -----------------------------------------------------------------------------------
 
+// What a host would miss besides the medium: surfaces, sprites, and other media.
+static void tell_what_is_left_out(const effect *e, const pass *march) {
+    static const char *const types[] = {"march",  "stack",    "splats",  "shell",
+                                        "pieces", "geometry", "forward", "point_light_glows"};
+    strbuf all = {0};
+    for (size_t i = 0; i < e->pass_count; i++)
+        for (size_t k = 0; k < COUNT_OF(types) && e->passes[i] != march; k++)
+            if (pass_is(e->passes[i], types[k]))
+                strbuf_add(&all, "%s'%s'", all.length ? ", " : "", pass_label(e->passes[i]));
+    if (all.length)
+        log_write(LOG_WARNING, "%s: a layer shows the medium of '%s' alone; it leaves out %s",
+                  e->file, pass_label(march), strbuf_text(&all));
+    strbuf_free(&all);
+}
+
 static pass *add_depth(effect *e) {
     pass *p = effect_add_pass(e, "host_depth", NULL, NULL);
     return p && pass_declare(p) ? p : NULL;
@@ -94,6 +110,7 @@ bool effect_add_layer(effect *e, const char *source, bool motion, effect_layer *
     *out = (effect_layer){0};
     pass *march = effect_find_march(e, source);
     if (!march) return false;
+    tell_what_is_left_out(e, march);
     const field *velocity = motion ? effect_find_velocity(e, march) : NULL;
     pass *depth = add_depth(e), *medium = NULL;
     if (!depth) return false;
