@@ -12,9 +12,9 @@
 // message that names the file, the line and the object.
 //
 // Threads: a roil, its effects and all objects made from them belong to the thread that called
-// roil_create. Functions that take none of these may be called from any thread, and each thread may
-// have roils of its own. Callbacks are called on the thread that made the call, unless they say
-// otherwise.
+// roil_create. Functions that take none of these, or NULL, may be called from any thread, and what
+// they give by one thread at a time; each thread may have roils of its own. Callbacks are called on
+// the thread that made the call, unless they say otherwise.
 //
 // The host's process: nothing is written to stdout or stderr (roil_set_log), no signal handler or
 // locale is set, nothing is forked, and exit() is not called. Files of strangers are read by a
@@ -22,8 +22,8 @@
 //
 // Out of memory is an error of the call (roil_set_allocator). What a call has begun is ended with a
 // reserve of 8 MiB; what is large is asked for before. Then the call fails, and what it was to make
-// is destroyed. Calls that end no earlier than one of another thread of roil's that found no memory
-// fail too. Only when the reserve is used up as well is abort() called.
+// is destroyed; one that counts returns 0. Calls that end no earlier than one of another thread of
+// roil's that found no memory fail too. Only when the reserve is used up as well is abort() called.
 //
 // Arrays and strings: those passed to a function are only read during the call, unless a comment
 // says otherwise. Functions that fill an array take its capacity, write at most that many elements
@@ -412,7 +412,8 @@ typedef struct roil_made {
 } roil_made;
 roil_made *roil_read_made(const char *file); // of a stranger, too; NULL with a message
 void roil_free_made(roil_made *m);           // NULL is allowed
-// The hash of all files that an effect has read, as its outputs have it; lives as long.
+// The hash of all files that an effect has read, as its outputs have it; lives as long. NULL
+// without memory.
 const char *roil_hash_inputs(roil_effect *e);
 
 typedef struct roil_video roil_video;

@@ -253,7 +253,7 @@ char *roil_curve_text(const roil_curve *c) {
 
 // ---- camera and bounds --------------------------------------------------------------------------
 
-bool roil_get_camera(roil_effect *e, roil_camera *out) {
+static bool get_camera(roil_effect *e, roil_camera *out) {
     const scene_camera *camera = &effect_scene(e->effect)->camera;
     vec3 eye, target;
     float fov[4], height[4];
@@ -269,7 +269,12 @@ bool roil_get_camera(roil_effect *e, roil_camera *out) {
     return true;
 }
 
-bool roil_get_bounds(roil_effect *e, float low[3], float high[3]) {
+bool roil_get_camera(roil_effect *e, roil_camera *out) {
+    mem_enter();
+    return mem_leave(get_camera(e, out));
+}
+
+static bool get_bounds(roil_effect *e, float low[3], float high[3]) {
     box3 all = box3_empty();
     for (size_t i = 0; i < effect_pass_count(e->effect); i++) {
         const pass *p = effect_get_pass(e->effect, i);
@@ -284,6 +289,11 @@ bool roil_get_bounds(roil_effect *e, float low[3], float high[3]) {
     memcpy(low, &all.min, sizeof all.min);
     memcpy(high, &all.max, sizeof all.max);
     return true;
+}
+
+bool roil_get_bounds(roil_effect *e, float low[3], float high[3]) {
+    mem_enter();
+    return mem_leave(get_bounds(e, low, high));
 }
 
 bool roil_is_under_ground(roil_effect *e, const float at[3], float *height) {

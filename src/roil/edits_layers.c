@@ -203,8 +203,8 @@ static bool change(roil_edits *x, layer_list *l, size_t i, roil_layer_change how
     return done;
 }
 
-roil_edits *roil_edits_create_layer(roil_effect *e, const char *layers, size_t layer,
-                                    roil_layer_change how) {
+static roil_edits *create_layer(roil_effect *e, const char *layers, size_t layer,
+                                roil_layer_change how) {
     layer_list l = {.effect = e, .own = find_layers(e, layers)};
     if (!l.own) return NULL;
     if (how == ROIL_LAYER_ADD) layer = l.own->count;
@@ -228,4 +228,12 @@ roil_edits *roil_edits_create_layer(roil_effect *e, const char *layers, size_t l
     }
     edits_end(x);
     return x;
+}
+
+roil_edits *roil_edits_create_layer(roil_effect *e, const char *layers, size_t layer,
+                                    roil_layer_change how) {
+    mem_enter();
+    roil_edits *made = create_layer(e, layers, layer, how);
+    LEAVE_WITH(made, roil_edits_free(made));
+    return made;
 }

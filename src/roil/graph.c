@@ -14,7 +14,7 @@ static pass *owner_of(roil_effect *e, const char *name) {
     return NULL;
 }
 
-size_t roil_graph_passes(roil_effect *e, roil_graph_pass *out, size_t capacity) {
+static size_t list_passes(roil_effect *e, roil_graph_pass *out, size_t capacity) {
     const graph *g = effect_graph(e->effect);
     size_t count = graph_passes(g, NULL, 0);
     graph_pass_info *all = mem_alloc(count * sizeof *all);
@@ -32,7 +32,12 @@ size_t roil_graph_passes(roil_effect *e, roil_graph_pass *out, size_t capacity) 
     return count;
 }
 
-size_t roil_graph_links(roil_effect *e, roil_graph_link *out, size_t capacity) {
+size_t roil_graph_passes(roil_effect *e, roil_graph_pass *out, size_t capacity) {
+    mem_enter();
+    return roil_leave_count(list_passes(e, out, capacity));
+}
+
+static size_t list_links(roil_effect *e, roil_graph_link *out, size_t capacity) {
     const graph *g = effect_graph(e->effect);
     size_t count = graph_passes(g, NULL, 0), links = 0;
     graph_pass_info *all = mem_alloc(count * sizeof *all);
@@ -45,6 +50,11 @@ size_t roil_graph_links(roil_effect *e, roil_graph_link *out, size_t capacity) {
     }
     mem_free(all);
     return links;
+}
+
+size_t roil_graph_links(roil_effect *e, roil_graph_link *out, size_t capacity) {
+    mem_enter();
+    return roil_leave_count(list_links(e, out, capacity));
 }
 
 char *roil_graph_fields(roil_effect *e, const char *name) {

@@ -11,6 +11,7 @@
 static bool make_layer(roil_effect *e, const roil_layer_desc *desc) {
     if (e->has_layer) return err_set("%s: the effect is a layer already", effect_file(e->effect));
     if (e->width) return err_set("roil_make_layer comes before roil_prepare");
+    if (e->averaged) return err_set("the pictures of a layer are not averaged");
     if (!effect_add_layer(e->effect, desc ? desc->source : NULL, desc && desc->motion, &e->layer))
         return false;
     e->has_layer = true;
@@ -148,7 +149,7 @@ void roil_read_size(const roil_readback *b, uint32_t *width, uint32_t *height) {
     *height = b->size.height;
 }
 
-bool roil_read_end(roil_readback *b, float *out) {
+static bool read_end(roil_readback *b, float *out) {
     bool done = !out || gpu_frame_wait(b->device, b->frame);
     if (out && done)
         roil_expand(gpu_buffer_map(b->buffer), b->size.format,
@@ -156,4 +157,9 @@ bool roil_read_end(roil_readback *b, float *out) {
     gpu_buffer_destroy(b->device, b->buffer);
     mem_free(b);
     return done;
+}
+
+bool roil_read_end(roil_readback *b, float *out) {
+    mem_enter();
+    return mem_leave(read_end(b, out));
 }

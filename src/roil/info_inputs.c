@@ -37,7 +37,7 @@ static size_t add_files(strbuf *out, const roil_input *files, size_t left) {
     return count;
 }
 
-char *roil_info_inputs(roil *r, const char *file) {
+static char *inputs_as_text(roil *r, const char *file) {
     roil_inputs *in = roil_collect(r, file);
     if (!in) return NULL;
     strbuf out = {0};
@@ -54,7 +54,12 @@ char *roil_info_inputs(roil *r, const char *file) {
     return out.text;
 }
 
-char *roil_info_inputs_json(roil *r, const char *file) {
+char *roil_info_inputs(roil *r, const char *file) {
+    mem_enter();
+    return roil_leave_text(inputs_as_text(r, file));
+}
+
+static char *inputs_as_json(roil *r, const char *file) {
     roil_inputs *in = roil_collect(r, file);
     if (!in) return NULL;
     json_t *files = json_array(), *about = info_effect_json(&in->info);
@@ -65,4 +70,9 @@ char *roil_info_inputs_json(roil *r, const char *file) {
     roil_free_inputs(in);
     return info_finish_json(
         json_pack("{s:s, s:o, s:o}", "roil", roil_version(), "effect", about, "files", files));
+}
+
+char *roil_info_inputs_json(roil *r, const char *file) {
+    mem_enter();
+    return roil_leave_text(inputs_as_json(r, file));
 }

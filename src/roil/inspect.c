@@ -58,7 +58,7 @@ void roil_apply_kept(roil_effect *e) {
     }
 }
 
-size_t roil_images(roil_effect *e, roil_image_info *out, size_t capacity) {
+static size_t describe_images(roil_effect *e, roil_image_info *out, size_t capacity) {
     graph *g = effect_graph(e->effect);
     if (!graph_order(g, NULL, 0)) return 0; // not compiled
     size_t count;
@@ -74,6 +74,11 @@ size_t roil_images(roil_effect *e, roil_image_info *out, size_t capacity) {
     }
     mem_free(images);
     return count;
+}
+
+size_t roil_images(roil_effect *e, roil_image_info *out, size_t capacity) {
+    mem_enter();
+    return roil_leave_count(describe_images(e, out, capacity));
 }
 
 // ---- the value under the cursor ---------------------------------------------------------------

@@ -95,13 +95,13 @@ bool roil_live_set(roil_live *l, const char *name, const char *value) {
     return mem_leave(true);
 }
 
-bool roil_live_reset(roil_live *l, const char *name) {
+static bool reset(roil_live *l, const char *name) {
     if (!name) {
         bool done = true;
         for (size_t i = l->setting_count;
              i-- > 0 && done;) { // each is removed, or stays as the last
             char *each = copy_text(l->settings[i].name);
-            done = roil_live_reset(l, each);
+            done = reset(l, each);
             mem_free(each);
         }
         return done;
@@ -113,6 +113,11 @@ bool roil_live_reset(roil_live *l, const char *name) {
     if (!c) return false;
     if (is_structural(e, c)) live_want(l);
     return is_fixed(c) || effect_reset(e, name);
+}
+
+bool roil_live_reset(roil_live *l, const char *name) {
+    mem_enter();
+    return mem_leave(reset(l, name));
 }
 
 char *roil_live_setting(roil_live *l, const char *name) {

@@ -142,7 +142,7 @@ static bool find_inner(const char *message, const char *scripts, char path[PATH_
     return false;
 }
 
-bool roil_find_place(const roil *r, const char *message, roil_place *out) {
+static bool find_named_place(const roil *r, const char *message, roil_place *out) {
     static_assert(sizeof out->file >= PATH_CAP, "a path fits");
     const char *scripts = r ? r->scripts : NULL;
     char line[LINE_MAX];
@@ -163,4 +163,9 @@ bool roil_find_place(const roil *r, const char *message, roil_place *out) {
     if (!found) *out = (roil_place){0};
     mem_free(kept);
     return found;
+}
+
+bool roil_find_place(const roil *r, const char *message, roil_place *out) {
+    mem_enter();
+    return mem_leave(find_named_place(r, message, out));
 }

@@ -53,7 +53,7 @@ static int by_value(const void *a, const void *b) {
 }
 
 // Hashes what is in the files, whatever they are called.
-const char *roil_hash_inputs(roil_effect *e) {
+static const char *hash_inputs(roil_effect *e) {
     if (e->inputs[0]) return e->inputs;
     const char *const *files;
     size_t count = effect_files(e->effect, &files), found = 0;
@@ -69,6 +69,12 @@ const char *roil_hash_inputs(roil_effect *e) {
     hash_to_hex(hash_bytes(hashes, found * sizeof *hashes), e->inputs);
     mem_free(hashes);
     return e->inputs;
+}
+
+const char *roil_hash_inputs(roil_effect *e) {
+    mem_enter();
+    const char *hash = hash_inputs(e);
+    return mem_leave(true) ? hash : NULL;
 }
 
 // ---- writing ----------------------------------------------------------------------------------
@@ -93,7 +99,7 @@ char *roil_describe(roil_effect *e, const roil_making *how) {
         "roil", ROIL_VERSION, "kind", how->kind, "effect", effect_source(e->effect), "frame",
         e->shown, "frames", how->first, how->last, how->step, "size", (int)e->width, (int)e->height,
         "settings", settings, "options", options, "device", roil_device_name(e->owner), "driver",
-        roil_device_driver(e->owner), "inputs", roil_hash_inputs(e));
+        roil_device_driver(e->owner), "inputs", hash_inputs(e));
     if (how->sheet) json_object_set_new(root, "sheet", json_string(how->sheet));
     if (how->part) json_object_set_new(root, "part", json_string(how->part));
     char *text = root ? json_text(root, JSON_COMPACT | JSON_ENSURE_ASCII) : NULL;

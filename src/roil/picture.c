@@ -401,7 +401,7 @@ struct roil_writer {
     jobs *files;
 };
 
-roil_writer *roil_writer_create(void) {
+static roil_writer *create_writer(void) {
     size_t threads = worker_cores() > MAX_THREADS ? MAX_THREADS : worker_cores();
     roil_writer *w = mem_alloc(sizeof *w);
     roil_srgb_fine_table(); // filled before several threads read it
@@ -409,6 +409,13 @@ roil_writer *roil_writer_create(void) {
     if (w->files) return w;
     mem_free(w);
     return NULL;
+}
+
+roil_writer *roil_writer_create(void) {
+    mem_enter();
+    roil_writer *made = create_writer();
+    LEAVE_WITH(made, roil_writer_finish(made));
+    return made;
 }
 
 bool roil_writer_save(roil_writer *w, roil_effect *e, const char *file,

@@ -33,7 +33,7 @@ static bool preset_path(char out[PATH_CAP], const char *effect_file, const char 
     return fits || path_too_long(effect_file);
 }
 
-size_t roil_presets(const char *effect_file, char (*names)[64], size_t capacity) {
+static size_t list_presets(const char *effect_file, char (*names)[64], size_t capacity) {
     char pattern[PATH_CAP];
     file_list files;
     roil_origin origin;
@@ -53,6 +53,11 @@ size_t roil_presets(const char *effect_file, char (*names)[64], size_t capacity)
     }
     file_list_free(&files);
     return count;
+}
+
+size_t roil_presets(const char *effect_file, char (*names)[64], size_t capacity) {
+    mem_enter();
+    return roil_leave_count(list_presets(effect_file, names, capacity));
 }
 
 // ---- reading ------------------------------------------------------------------------------------

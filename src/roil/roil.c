@@ -31,6 +31,10 @@ char *roil_leave_text(char *text) {
     return text;
 }
 
+size_t roil_leave_count(size_t count) {
+    return mem_leave(true) ? count : 0;
+}
+
 void roil_set_log(void (*write)(void *user, int level, const char *text), void *user,
                   roil_level least) {
     _Static_assert((int)ROIL_DEBUG == (int)LOG_DEBUG && (int)ROIL_ERROR == (int)LOG_ERROR,
@@ -176,7 +180,7 @@ const char *roil_device_name(const roil *r) {
 }
 
 bool roil_wants_preview(const roil *r) {
-    return gpu_get_profile(r->device)->previews;
+    return r->device && gpu_get_profile(r->device)->previews;
 }
 
 const char *roil_device_driver(const roil *r) {
@@ -369,14 +373,20 @@ graph_image roil_find_image(roil_effect *e, const char *name) {
     return found;
 }
 
-bool roil_set_samples(roil_effect *e, uint32_t samples, double shutter) {
+static bool set_samples(roil_effect *e, uint32_t samples, double shutter) {
     if (samples < 1 || samples > 65536 || !(shutter >= 0 && shutter <= 1))
         return err_set("%u samples over %g frames; accepted: 1 to 65536, 0 to 1", samples, shutter);
     if (e->averaged) return err_set("the samples of a frame are set once");
+    if (e->has_layer) return err_set("the pictures of a layer are not averaged");
     if (!effect_set_samples(e->effect, samples, shutter)) return false;
     e->averaged = samples;
     e->shutter = shutter;
     return true;
+}
+
+bool roil_set_samples(roil_effect *e, uint32_t samples, double shutter) {
+    mem_enter();
+    return mem_leave(set_samples(e, samples, shutter));
 }
 
 bool roil_prepare(roil_effect *e, uint32_t width, uint32_t height) {
@@ -512,7 +522,7 @@ static size_t add_up(gpu_pass_time *times, size_t count) {
     return kept;
 }
 
-size_t roil_times(roil_effect *e, roil_time *out, size_t capacity) {
+static size_t list_times(roil_effect *e, roil_time *out, size_t capacity) {
     gpu_pass_time *times = mem_alloc(2 * GPU_MAX_PASSES * sizeof *times);
     size_t count = gpu_frame_times(e->owner->device, e->frame, times, GPU_MAX_PASSES);
     if (count) count += effect_times_ahead(e->effect, times + count, GPU_MAX_PASSES);
@@ -523,6 +533,11 @@ size_t roil_times(roil_effect *e, roil_time *out, size_t capacity) {
     }
     mem_free(times);
     return count;
+}
+
+size_t roil_times(roil_effect *e, roil_time *out, size_t capacity) {
+    mem_enter();
+    return roil_leave_count(list_times(e, out, capacity));
 }
 
 // Returns millions of units of work per second in the last frame: `work` divided by the time of the

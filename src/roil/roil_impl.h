@@ -118,7 +118,8 @@ gpu *roil_open_host(const gpu_desc *how, const roil_vulkan *vulkan);
         }                                                                                          \
         mem_leave((object) != NULL);                                                               \
     } while (0)
-char *roil_leave_text(char *text); // the same of a text, which is returned
+char *roil_leave_text(char *text);     // the same of a text, which is returned
+size_t roil_leave_count(size_t count); // and of a call that counts: 0 when memory was short
 
 time_limit roil_time_limit(const roil *r); // a new limit for a load
 // What an effect is created with, by the options of `r`; the other members are zero.

@@ -262,12 +262,18 @@ roil_sheet *roil_sheet_create(roil_effect *e, const roil_sheet_desc *desc) {
     return made;
 }
 
-bool roil_repeats(roil_effect *e, const char *source, double seconds, char *why, size_t capacity) {
+static bool repeats(roil_effect *e, const char *source, double seconds, char *why,
+                    size_t capacity) {
     strbuf text = {0};
     bool done = effect_repeats(e->effect, source, seconds, &text);
     str_copy(why, capacity, strbuf_text(&text));
     strbuf_free(&text);
     return done;
+}
+
+bool roil_repeats(roil_effect *e, const char *source, double seconds, char *why, size_t capacity) {
+    mem_enter();
+    return mem_leave(repeats(e, source, seconds, why, capacity));
 }
 
 static bool add_map(roil_sheet *s, sheet *maps, sheet_map map, uint32_t cell, float weight) {

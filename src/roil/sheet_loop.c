@@ -69,13 +69,18 @@ static void blend_map(roil_sheet *s, sheet_map map, uint32_t cell, uint32_t slot
     mem_free(out);
 }
 
-bool roil_sheet_dissolve(roil_sheet *s, uint32_t cell, double part) {
+static bool dissolve(roil_sheet *s, uint32_t cell, double part) {
     const uint32_t cells = s->columns * s->rows;
     if (cell >= cells || cells - cell > s->fade)
         return err_set("cell %u is not among the last %u", cell, s->fade);
     const uint32_t slot = cell - (cells - s->fade);
     s->parts[slot] = (float)part;
     return sheet_take(s, s->before, slot, 1);
+}
+
+bool roil_sheet_dissolve(roil_sheet *s, uint32_t cell, double part) {
+    mem_enter();
+    return mem_leave(dissolve(s, cell, part));
 }
 
 bool sheet_blend(roil_sheet *s, double fps) {

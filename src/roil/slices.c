@@ -108,9 +108,14 @@ bool roil_slices_draw(roil_effect *e, const roil_slices_view *how, roil_texture 
     return mem_leave(drawn && slices_view_draw(r, image, &block, drawn) && view_bring(r, target));
 }
 
-bool roil_slices_greatest(roil_effect *e, const roil_slices_view *how, float *out) {
+static bool find_greatest(roil_effect *e, const roil_slices_view *how, float *out) {
     const pass *p = roil_slices_find(e, how->flow, how->slice);
     return p && pass_slices_greatest(p, (int)how->field, how->slice, out);
+}
+
+bool roil_slices_greatest(roil_effect *e, const roil_slices_view *how, float *out) {
+    mem_enter();
+    return mem_leave(find_greatest(e, how, out));
 }
 
 // ---- touching ---------------------------------------------------------------------------------

@@ -327,11 +327,16 @@ static points gather(roil_effect *e) {
     return all;
 }
 
-size_t roil_handles(roil_effect *e, roil_handle *out, size_t capacity) {
+static size_t list_handles(roil_effect *e, roil_handle *out, size_t capacity) {
     points all = gather(e);
     for (size_t i = 0; i < all.count && i < capacity; i++) out[i] = all.list[i].face;
     mem_free(all.list);
     return all.count;
+}
+
+size_t roil_handles(roil_effect *e, roil_handle *out, size_t capacity) {
+    mem_enter();
+    return roil_leave_count(list_handles(e, out, capacity));
 }
 
 // ---- one of them --------------------------------------------------------------------------------

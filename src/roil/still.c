@@ -138,7 +138,8 @@ static bool arrive(roil *r, roil_still *s) {
 }
 
 bool roil_still_ready(roil *r, roil_still *s) {
-    return !s->readback || arrive(r, s);
+    mem_enter();
+    return mem_leave(!s->readback || arrive(r, s));
 }
 
 bool view_wait(roil *r, roil_still *s) {

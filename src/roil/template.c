@@ -117,7 +117,7 @@ static int by_file(const void *a, const void *b) {
     return strcmp(((const roil_template *)a)->file, ((const roil_template *)b)->file);
 }
 
-size_t roil_templates(const roil_effect *e, roil_template *out, size_t capacity) {
+static size_t list_templates(const roil_effect *e, roil_template *out, size_t capacity) {
     char library[PATH_CAP];
     listing l = {.out = out, .capacity = capacity};
     bool more = library_root(e, library);
@@ -126,6 +126,11 @@ size_t roil_templates(const roil_effect *e, roil_template *out, size_t capacity)
     for (size_t i = 0; more && i < COUNT_OF(kinds); i++) add_folder(&l, library, kinds[i], true);
     qsort(out, l.count < capacity ? l.count : capacity, sizeof *out, by_file);
     return l.count;
+}
+
+size_t roil_templates(const roil_effect *e, roil_template *out, size_t capacity) {
+    mem_enter();
+    return roil_leave_count(list_templates(e, out, capacity));
 }
 
 // ---- reading ----------------------------------------------------------------------------------

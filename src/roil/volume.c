@@ -97,11 +97,9 @@ roil_volume *roil_volume_create(roil_effect *e, const roil_volume_desc *desc) {
 roil_volume_info roil_volume_get_info(const roil_volume *v) {
     roil_volume_info info = {.voxel_size = v->content.voxel};
     memcpy(info.size, v->content.size, sizeof info.size);
-    strbuf names = {0};
-    for (size_t i = 0; i < v->content.count; i++)
-        strbuf_add(&names, "%s%s", i ? ", " : "", v->content.fields[i].name);
-    str_copy(info.fields, sizeof info.fields, strbuf_text(&names));
-    strbuf_free(&names);
+    for (size_t i = 0, at = 0; i < v->content.count && at < sizeof info.fields; i++)
+        at += (size_t)snprintf(info.fields + at, sizeof info.fields - at, "%s%s", i ? ", " : "",
+                               v->content.fields[i].name);
     return info;
 }
 

@@ -4,6 +4,7 @@
 #include "roil/roil_impl.h"
 #include "roil_vulkan.h"
 #include <string.h>
+#include <unistd.h>
 
 static gpu_host host_of(const roil_vulkan *v) {
     return (gpu_host){.get_proc = (void (*(*)(void *, const char *))(void))v->get,
@@ -21,8 +22,8 @@ static gpu_host host_of(const roil_vulkan *v) {
                       .user = v->user};
 }
 
-bool roil_vulkan_find_needs(PFN_vkGetInstanceProcAddr get, VkInstance instance,
-                            VkPhysicalDevice physical, roil_vulkan_needs *out) {
+static bool find_needs(PFN_vkGetInstanceProcAddr get, VkInstance instance,
+                       VkPhysicalDevice physical, roil_vulkan_needs *out) {
     const gpu_host host =
         host_of(&(roil_vulkan){.get = get, .instance = instance, .physical = physical});
     gpu_host_needs needs;
@@ -32,6 +33,12 @@ bool roil_vulkan_find_needs(PFN_vkGetInstanceProcAddr get, VkInstance instance,
     out->extension_count = needs.extension_count;
     for (uint32_t i = 0; i < needs.extension_count; i++) out->extensions[i] = needs.extensions[i];
     return true;
+}
+
+bool roil_vulkan_find_needs(PFN_vkGetInstanceProcAddr get, VkInstance instance,
+                            VkPhysicalDevice physical, roil_vulkan_needs *out) {
+    mem_enter();
+    return mem_leave(find_needs(get, instance, physical, out));
 }
 
 gpu *roil_open_host(const gpu_desc *how, const roil_vulkan *vulkan) {
@@ -157,11 +164,12 @@ static bool render(roil_effect *e, double frame, const roil_vulkan_frame *f,
                    bool (*draw)(roil_effect *e, double frame)) {
     handover h = {.effect = e, .frame = f};
     if (!check_frame(e, f)) return false;
+    mem_enter();
     effect_around_frame(e->effect, begin, end, &h);
     bool done = draw(e, frame);
     effect_around_frame(e->effect, NULL, NULL, NULL);
     if (!h.returned) give_back(&h);
-    return done;
+    return mem_leave(done);
 }
 
 bool roil_vulkan_render(roil_effect *e, double frame, const roil_vulkan_frame *f) {
@@ -184,8 +192,17 @@ static void take_shared(const gpu_shared *from, roil_vulkan_shared *out) {
     memcpy(out->driver_uuid, from->driver, sizeof out->driver_uuid);
 }
 
-bool roil_vulkan_share_image(roil *r, VkFormat format, uint32_t width, uint32_t height,
-                             roil_vulkan_shared *out) {
+// What was made is closed, and gone, when memory was short.
+static bool leave_shared(roil *r, bool done, roil_vulkan_shared *out) {
+    if (done && mem_is_short()) {
+        close(out->fd);
+        roil_vulkan_unshare(r, out);
+    }
+    return mem_leave(done);
+}
+
+static bool share_image(roil *r, VkFormat format, uint32_t width, uint32_t height,
+                        roil_vulkan_shared *out) {
     gpu_shared shared;
     if (!r->device) return err_set("no device: there is no image to share");
     if (!gpu_share_image(r->device, (int)format, width, height, &shared)) return false;
@@ -199,12 +216,23 @@ bool roil_vulkan_share_image(roil *r, VkFormat format, uint32_t width, uint32_t 
     return true;
 }
 
-bool roil_vulkan_share_semaphore(roil *r, roil_vulkan_shared *out) {
+bool roil_vulkan_share_image(roil *r, VkFormat format, uint32_t width, uint32_t height,
+                             roil_vulkan_shared *out) {
+    mem_enter();
+    return leave_shared(r, share_image(r, format, width, height, out), out);
+}
+
+static bool share_semaphore(roil *r, roil_vulkan_shared *out) {
     gpu_shared shared;
     if (!r->device) return err_set("no device: there is no semaphore to share");
     if (!gpu_share_semaphore(r->device, &shared)) return false;
     take_shared(&shared, out);
     return true;
+}
+
+bool roil_vulkan_share_semaphore(roil *r, roil_vulkan_shared *out) {
+    mem_enter();
+    return leave_shared(r, share_semaphore(r, out), out);
 }
 
 void roil_vulkan_unshare(roil *r, roil_vulkan_shared *shared) {

@@ -65,7 +65,7 @@ static bool works(use *u, roil_effect *e) {
                 roil_set_floats(e, control, &thickness, 1) && roil_set(e, "steps", "6") &&
                 (text = roil_info_params(e)) != NULL;
     roil_free(text);
-    if (!done || !u->draws) return done;
+    if (!done || !u->draws) return done && roil_graph_passes(e, NULL, 0) > 0; // allocates last
     return roil_prepare(e, WIDTH, HEIGHT) && roil_render(e, 2) && roil_read(e, false, u->pixels);
 }
 
