@@ -6,19 +6,36 @@
 // engine_vulkan.h has what every engine has; all that concerns roil is here.
 #include "engine_vulkan.h"
 #include <roil_vulkan.h>
+#include <stdatomic.h>
 
 static roil *r;
 static roil_effect *effects[EFFECTS];
+static uint64_t now;       // of the timeline, once all that was submitted is done
+static atomic_long blocks; // of memory that roil has
 
+static void *allocate_for_roil(void *user, void *block, size_t size) {
+    (void)user;
+    void *given = size ? realloc(block, size) : NULL;
+    if (!size) free(block);
+    if (!size || (given && !block)) atomic_fetch_add(&blocks, size ? 1 : -1);
+    return given;
+}
+
+// Validation tells what roil has left on the device.
 static void close_all(void) {
     for (int i = 0; i < EFFECTS; i++) roil_unload(effects[i]);
     roil_destroy(r);
     close_engine();
+    if (blocks) fprintf(stderr, "%ld blocks were not freed\n", (long)blocks);
+    if (blocks) complaints++;
 }
 
-// Says why, and leaves nothing behind.
-static void stop(void) {
+static bool tell(void) {
     fprintf(stderr, "engine: %s\n", roil_error());
+    return false;
+}
+
+static void stop(void) {
     close_all();
     exit(complaints ? 2 : 1);
 }
@@ -26,6 +43,8 @@ static void stop(void) {
 // The device is the engine's own, made with what roil asks for besides.
 static void open_roil(void) {
     static roil_vulkan_needs needs;
+    if (!roil_set_allocator(&(roil_allocator){.allocate = allocate_for_roil}))
+        FAIL("%s", roil_error());
     if (!roil_vulkan_find_needs(vkGetInstanceProcAddr, instance, physical, &needs))
         FAIL("%s", roil_error());
     float priority = 1;
@@ -49,14 +68,18 @@ static void open_roil(void) {
                           .extension_count = needs.extension_count};
     open_engine(); // what is left of it
     r = roil_create(&(roil_desc){.vulkan = &vulkan, .device_memory = getenv("ENGINE_MEMORY")});
-    if (!r) stop();
+    if (r) return;
+    tell();
+    stop();
 }
 
 static void open_effect(int i, const char *file) {
     effects[i] = roil_load(r, file, NULL, 0);
     if (!effects[i] || !roil_make_layer(effects[i], NULL) ||
-        !roil_prepare(effects[i], WIDTH, HEIGHT))
+        !roil_prepare(effects[i], WIDTH, HEIGHT)) {
+        tell();
         stop();
+    }
 }
 
 // ---- a frame ----------------------------------------------------------------------------------
@@ -102,8 +125,8 @@ static void draw_scene(const roil_view *view, uint64_t after) {
     submit(commands, 0, after);
 }
 
-// One effect into its two images, between the engine's own work.
-static void draw_effect(int i, int frame, const roil_view *view, uint64_t before, uint64_t after) {
+// One effect into its two images, between the engine's own work, which goes on where it fails.
+static bool draw_effect(int i, int frame, const roil_view *view, uint64_t before, uint64_t after) {
     const roil_vulkan_semaphore wait = {timeline, before}, signal = {timeline, after};
     roil_vulkan_frame f = {.waits = &wait, .wait_count = 1, .signals = &signal, .signal_count = 1};
     f.depth = (roil_vulkan_image){.image = depth.image,
@@ -118,19 +141,21 @@ static void draw_effect(int i, int frame, const roil_view *view, uint64_t before
                                           .width = WIDTH,
                                           .height = HEIGHT,
                                           .after = VK_IMAGE_LAYOUT_GENERAL};
-    if (!roil_set_view(effects[i], view) || !roil_vulkan_render(effects[i], frame, &f)) stop();
+    return (roil_set_view(effects[i], view) && roil_vulkan_render(effects[i], frame, &f)) || tell();
 }
 
-static void draw_frame(int frame) {
-    const uint64_t before =
-        4 * (uint64_t)frame; // the timeline's value at the end of the last frame
+static bool draw_frame(int frame) {
+    bool done = true;
     roil_view view;
     place_camera(frame, &view);
-    wait_for(before);
-    draw_scene(&view, before + 1);
-    draw_effect(0, frame, &view, before + 1, before + 2);
-    draw_effect(1, frame, &view, before + 2, before + 3);
-    compose_layers(before + 3, before + 4);
+    wait_for(now);
+    draw_scene(&view, ++now);
+    for (int i = 0; i < EFFECTS && !roil_is_lost(r); i++, now++)
+        if (!draw_effect(i, frame, &view, now, now + 1)) done = false;
+    if (roil_is_lost(r)) stop(); // what it was to signal never comes
+    compose_layers(now, now + 1);
+    now++;
+    return done;
 }
 
 int main(int count, char **arguments) {
@@ -139,8 +164,9 @@ int main(int count, char **arguments) {
     open_instance();
     open_roil();
     for (int i = 0; i < EFFECTS; i++) open_effect(i, arguments[1 + i]);
-    for (int frame = 0; frame < frames; frame++) draw_frame(frame);
-    wait_for(4 * (uint64_t)frames);
+    for (int frame = 0; frame < frames; frame++) // one that failed is drawn again, once
+        if (!draw_frame(frame) && !draw_frame(frame)) stop();
+    wait_for(now);
     write_picture(arguments[1 + EFFECTS]);
     close_all();
     return complaints ? 2 : 0;

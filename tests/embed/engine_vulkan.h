@@ -301,7 +301,6 @@ static void destroy_image(image *i) {
     vkFreeMemory(device, i->memory, NULL);
 }
 
-// Validation tells what roil left behind.
 static void close_engine(void) {
     vkDeviceWaitIdle(device);
     vkDestroyBuffer(device, host_buffer, NULL);

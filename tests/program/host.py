@@ -133,11 +133,12 @@ class Host(Case):
 
     def test_calls_that_fail_are_said(self):
         """A sample of the calls of Vulkan, the engine's and roil's, fails, each once: with a message, and nothing is
-        left behind that validation knows of."""
+        left behind that validation or the engine's allocator knows of. A frame that failed can be drawn again."""
         counts = self.path("counts")
         faults = {"LD_PRELOAD": os.path.join(BINARY, "libfault.so"), "ROIL_FAULT_FILE": counts}
         done = self.engine("2", **faults)
         self.assertEqual(done.returncode, 0, done.stderr)
+        expected = self.read("engine.pfm")
         calls = struct.unpack("<Q", self.read("counts")[:8])[0]
         self.assertGreater(calls, 100)
         for number in choose(calls):
@@ -147,7 +148,9 @@ class Host(Case):
                 self.assertIn(done.returncode, (0, 1), done.stderr)
                 self.assertNotIn("validation: ", done.stderr)
                 lines = [line for line in done.stderr.splitlines() if line.startswith("engine: ")]
-                self.assertEqual(len(lines), done.returncode, done.stderr)
+                self.assertLessEqual(done.returncode, len(lines), done.stderr)
+                self.assertLessEqual(len(lines), 1, done.stderr)
+                self.assertTrue(done.returncode == 1 or self.read("engine.pfm") == expected, done.stderr)
 
 
 if __name__ == "__main__":
