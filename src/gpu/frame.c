@@ -40,7 +40,7 @@ bool gpu_frame_end(gpu *g) {
     if (!vk_alive(g)) return false;
     if (!vk_batch_submit(g, &frame->batch)) return false;
     vk_collect(g);
-    return vk_present(g);
+    return vk_alive(g) && vk_present(g); // that may have been found lost by now
 }
 
 bool gpu_frame_wait(gpu *g, uint64_t frame) {
