@@ -12,7 +12,7 @@
 -- explosion, as layered_explosion.lua explains.
 
 local spread = require "spread"
-local fx = effect { name = "barrel_chain", fps = 24, frames = 216 }
+local fx = effect { name = "barrel_chain", fps = 24, frames = 216, author = "the roil authors", licence = "MIT" }
 
 local reach     = param { "reach", 1.5, min = 0.2, max = 6, unit = "m", help = "how far a burst lights others" }
 local size      = param { "size", 1.05, min = 0.1, max = 5, unit = "m", help = "radius of a burst" }

@@ -9,7 +9,7 @@
 --
 -- Play with `stir`, `heat` (how fast it rises) and `slices.reynolds` (low: syrup).
 
-local fx = effect { name = "cigarette", fps = 24, frames = 192 }
+local fx = effect { name = "cigarette", fps = 24, frames = 192, author = "the roil authors", licence = "MIT" }
 
 local detail    = param { "detail", 0.5, min = 0.25, max = 4, help = "cells along each edge of a slice, relative to 256 x 512; taken when the effect loads" }
 local rendering = param { "rendering", "volume", words = {"volume", "particles", "both"}, help = "how the flow is shown" }:get()

@@ -3,7 +3,7 @@
 --
 --   roil render effects/cloud.lua --frames 0 -o cloud.png
 
-local fx = effect { name = "cloud", fps = 24, frames = 240 }
+local fx = effect { name = "cloud", fps = 24, frames = 240, author = "the roil authors", licence = "MIT" }
 
 local density = param { "density", 0.09, min = 0, max = 1, unit = "1/m", help = "extinction where the grid's density is 1" }
 local detail  = param { "detail", 0.55, min = 0, max = 2, help = "how much the noise eats from the edges" }

@@ -7,7 +7,7 @@
 -- Play with `speed` (fast jets tear each other up, slow ones only lean together), `lift` (how hot the
 -- smoke is) and `uneven` (how much the jets flutter); then with `power` and the two colours.
 
-local fx = effect { name = "collide", fps = 24, frames = 192 }
+local fx = effect { name = "collide", fps = 24, frames = 192, author = "the roil authors", licence = "MIT" }
 
 local detail  = param { "detail", 0.5, min = 0.25, max = 2, help = "cells along each edge, relative to 128 x 64 x 96; taken when the effect loads" }
 local density = param { "density", 9, min = 0, max = 50, unit = "1/m", help = "how thick the smoke is" }

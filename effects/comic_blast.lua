@@ -8,7 +8,7 @@
 --
 -- Play with `fires` and `greys`, how many colours there are, with `lumps`, and with the palettes.
 
-local fx = effect { name = "comic_blast", fps = 12, frames = 44 }
+local fx = effect { name = "comic_blast", fps = 12, frames = 44, author = "the roil authors", licence = "MIT" }
 
 local fires = param { "fires", 4, min = 1, max = 12, integer = true, help = "colours of what glows" }
 local greys = param { "greys", 3, min = 1, max = 12, integer = true, help = "colours of the smoke" }

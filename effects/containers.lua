@@ -7,7 +7,7 @@
 --
 -- Play with `arch`, `bow`, `grain` and `flutter`, with `count`, and with the stops of `colors`.
 
-local fx = effect { name = "containers", fps = 24, frames = 144 }
+local fx = effect { name = "containers", fps = 24, frames = 144, author = "the roil authors", licence = "MIT" }
 
 local drawn_as = param { "drawn_as", "spots", words = {"spots", "meshes"}, help = "what stands at each particle" }
 local count    = param { "count", 14000, min = 100, max = 200000, integer = true, help = "particles of the rainbow; taken when the effect loads" }

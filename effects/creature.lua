@@ -6,7 +6,7 @@
 --
 -- Play with `breath` (a curve: how hard it blows), `open` (the jaw), `heat` and `lift`.
 
-local fx = effect { name = "creature", fps = 24, frames = 192 }
+local fx = effect { name = "creature", fps = 24, frames = 192, author = "the roil authors", licence = "MIT" }
 
 local detail  = param { "detail", 0.5, min = 0.25, max = 2, help = "cells along each edge, relative to 160 x 64 x 96; taken when the effect loads" }
 local density = param { "density", 12, min = 0, max = 50, unit = "1/m", help = "how thick the smoke is" }

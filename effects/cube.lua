@@ -9,7 +9,7 @@
 -- Play with `density` (how far light gets), `weight` and `hold`, with the colours of the lamps and with
 -- how far they stand apart.
 
-local fx = effect { name = "cube", fps = 24, frames = 144 }
+local fx = effect { name = "cube", fps = 24, frames = 144, author = "the roil authors", licence = "MIT" }
 
 local detail  = param { "detail", 0.5, min = 0.25, max = 2, help = "cells along each edge, relative to 128 x 96 x 64; taken when the effect loads" }
 local density = param { "density", 9, min = 0, max = 50, unit = "1/m", help = "how thick the smoke is" }

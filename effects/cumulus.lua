@@ -7,7 +7,7 @@
 --
 -- Play with `lift` (a gentle day or a thunderstorm), `base` (moist air has low clouds), `width` and `wind`.
 
-local fx = effect { name = "cumulus", fps = 24, frames = 132 }
+local fx = effect { name = "cumulus", fps = 24, frames = 132, author = "the roil authors", licence = "MIT" }
 
 local detail  = param { "detail", 0.5, min = 0.25, max = 2, help = "cells along each edge, relative to 128 x 128 x 96; taken when the effect loads" }
 local density = param { "density", 40, min = 0, max = 100, unit = "1/m", help = "of the cloud" }

@@ -10,7 +10,7 @@
 -- around the lights as published, or by asking all of them; path = "forward" lights triangles where they
 -- are drawn instead. The picture is the same.
 
-local fx = effect { name = "deferred_lights", fps = 30, frames = 600 }
+local fx = effect { name = "deferred_lights", fps = 30, frames = 600, author = "the roil authors", licence = "MIT" }
 
 local lights = param { "lights", 200, min = 1, max = 16384, integer = true, help = "how many" }
 local speed  = param { "speed", 0.16, min = 0, max = 2, unit = "rad/s", help = "of the lights around the middle, in the mean" }

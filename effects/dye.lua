@@ -7,7 +7,7 @@
 --
 -- Play with `inks`, the palette (in `roil live` its stops can be dragged), `swirl`, `speed` and `folded`.
 
-local fx = effect { name = "dye", fps = 24, frames = 192 }
+local fx = effect { name = "dye", fps = 24, frames = 192, author = "the roil authors", licence = "MIT" }
 
 local detail  = param { "detail", 0.5, min = 0.25, max = 2, help = "cells along each edge, relative to 96 x 96 x 96; taken when the effect loads" }
 local density = param { "density", 14, min = 0, max = 50, unit = "1/m", help = "how thick the smoke is" }

@@ -5,7 +5,7 @@
 --   roil render effects/explosion.lua --frames 30 -o perlin.png --set noise=perlin
 --   roil info params effects/explosion.lua          -- what --set can change
 
-local fx = effect { name = "explosion", fps = 24, frames = 100 }
+local fx = effect { name = "explosion", fps = 24, frames = 100, author = "the roil authors", licence = "MIT" }
 
 -- Everything you may want to turn, with its range: --set density=30
 local density    = param { "density", 40, min = 0, max = 200, unit = "1/m", help = "extinction where the grid's density is 1" }

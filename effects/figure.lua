@@ -7,7 +7,7 @@
 --
 -- Play with `wind`, `lift`, `rest`, `uneven` (how rough the body is), `wisps` and `presence`, a curve.
 
-local fx = effect { name = "figure", fps = 24, frames = 192 }
+local fx = effect { name = "figure", fps = 24, frames = 192, author = "the roil authors", licence = "MIT" }
 
 local detail  = param { "detail", 0.5, min = 0.25, max = 2, help = "cells along each edge, relative to 192 x 64 x 96; taken when the effect loads" }
 local density = param { "density", 80, min = 0, max = 200, unit = "1/m", help = "how thick the body is; what it leaves is much thinner" }

@@ -9,7 +9,7 @@
 --
 -- Play with `corona`, with `slices.cooling_rate` (how far tongues reach) and `tongues.amount`.
 
-local fx = effect { name = "fireball", fps = 24, frames = 96 }
+local fx = effect { name = "fireball", fps = 24, frames = 96, author = "the roil authors", licence = "MIT" }
 
 local detail     = param { "detail", 0.5, min = 0.25, max = 4, help = "cells along each edge of a slice, relative to 192 x 192; taken when the effect loads" }
 local rendering  = param { "rendering", "volume", words = {"volume", "particles", "both"}, help = "how the flow is shown" }:get()

@@ -12,7 +12,7 @@
 -- Play with `wind`, `reach` (at 14 m the fire jumps the river) and `burn`.
 
 local spread = require "spread"
-local fx = effect { name = "forest_fire", fps = 24, frames = 720, seed = 3 }
+local fx = effect { name = "forest_fire", fps = 24, frames = 720, seed = 3, author = "the roil authors", licence = "MIT" }
 
 local trees = param { "trees", 500, min = 1, max = 4000, integer = true, help = "that there are" }:get()
 local fires = param { "fires", 0, min = 0, max = 4000, integer = true, help = "that burn from the beginning" }

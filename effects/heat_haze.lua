@@ -3,7 +3,7 @@
 --
 --   roil render effects/heat_haze.lua --frames 24 -o haze.png --set heat_haze.strength=0.03
 
-local fx = effect { name = "heat_haze", fps = 24, frames = 48 }
+local fx = effect { name = "heat_haze", fps = 24, frames = 48, author = "the roil authors", licence = "MIT" }
 
 -- A fire made of shapes and noise alone: no file is needed.
 local tongue = capsule { from = {0, 0, 0.2}, to = {0, 0, 1.9}, radius = 0.75, falloff = 0.75 }

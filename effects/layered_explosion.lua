@@ -14,7 +14,7 @@
 -- published, the vertices of a sphere are moved and drawn. volume: the same layers fill space, and a
 -- ray marches through what is inside of the surface.
 
-local fx = effect { name = "layered_explosion", fps = 24, frames = 120 }
+local fx = effect { name = "layered_explosion", fps = 24, frames = 120, author = "the roil authors", licence = "MIT" }
 
 local form = param { "form", "rays", words = {"rays", "mesh", "volume"}, help = "what the explosion is made of" }
 

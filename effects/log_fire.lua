@@ -9,7 +9,7 @@
 --
 -- Play with `heat` (how high it burns), `licks` and `billows`, and `slices.cooling_rate`.
 
-local fx = effect { name = "log_fire", fps = 24, frames = 192 }
+local fx = effect { name = "log_fire", fps = 24, frames = 192, author = "the roil authors", licence = "MIT" }
 
 local detail     = param { "detail", 0.5, min = 0.25, max = 4, help = "cells along each edge of a slice, relative to 128 x 256; taken when the effect loads" }
 local rendering  = param { "rendering", "volume", words = {"volume", "particles", "both"}, help = "how the flow is shown" }:get()

@@ -10,7 +10,7 @@
 -- a highlight and what the sky sends back become wide and dull. The last of each side has `toon = false`:
 -- its light stays smooth in any model.
 
-local fx = effect { name = "materials", fps = 24, frames = 96 }
+local fx = effect { name = "materials", fps = 24, frames = 96, author = "the roil authors", licence = "MIT" }
 
 local model = param { "model", "physical", words = {"physical", "lambert", "blinn_phong", "toon"}, help = "what surfaces make of light" }:get()
 local gloss = param { "gloss", 0.5, min = 0, max = 1, help = "how much the lacquer mirrors" }

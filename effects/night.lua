@@ -3,7 +3,7 @@
 --
 --   roil render effects/night.lua --frames 22 -o night.png
 
-local fx = effect { name = "night", fps = 24, frames = 100 }
+local fx = effect { name = "night", fps = 24, frames = 100, author = "the roil authors", licence = "MIT" }
 
 local density    = param { "density", 46, min = 0, max = 200, unit = "1/m", help = "extinction where the grid's density is 1" }
 local brightness = param { "brightness", 15, min = 0, max = 100, help = "factor of the fire's light" }

@@ -5,7 +5,7 @@
 --   roil render effects/paper.lua --frames 10,30,50,70
 --   roil render effects/paper.lua --frames 30 --size 1920x1080 --set noise=perlin --set steps=64 --set march.resolution=0.5
 
-local fx = effect { name = "paper", fps = 24, frames = 100 }
+local fx = effect { name = "paper", fps = 24, frames = 100, author = "the roil authors", licence = "MIT" }
 
 local steps   = param { "steps", 128, min = 1, max = 1024, integer = true, help = "16, 32, 64, 128 or 256 in the paper" }
 local opacity = param { "opacity", 20, min = 0, max = 40, help = "volume density, section 4" }

@@ -4,7 +4,7 @@
 --   roil render effects/plume.lua --frames 60 -o plume.png
 --   roil render effects/plume.lua --frames 60 --set wind=1.5 -o windy.png
 
-local fx = effect { name = "plume", fps = 24, frames = 240 }
+local fx = effect { name = "plume", fps = 24, frames = 240, author = "the roil authors", licence = "MIT" }
 
 -- What you may want to turn. Each is a slider in `roil live`, and a --set of `roil render`.
 local density = param { "density", 9, min = 0, max = 50, unit = "1/m", help = "how thick the smoke is" }

@@ -4,7 +4,7 @@
 --   roil render effects/plumes.lua --frames 60 -o plumes.png
 --   roil render effects/plumes.lua --frames 60 --set lamps=0 --set moon=4 -o moonlit.png
 
-local fx = effect { name = "plumes", fps = 24, frames = 240 }
+local fx = effect { name = "plumes", fps = 24, frames = 240, author = "the roil authors", licence = "MIT" }
 
 -- What you may want to turn. Each is a slider in `roil live`, and a --set of `roil render`.
 local density = param { "density", 7, min = 0, max = 20, unit = "1/m", help = "how thick the smoke is" }

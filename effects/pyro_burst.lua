@@ -5,7 +5,7 @@
 --   roil render effects/pyro_burst.lua --frames 24 -o burst.png
 --   roil render effects/pyro_burst.lua --frames 24 --set quality=film -o film.png    -- on a graphics card
 
-local fx = effect { name = "pyro burst", fps = 24, frames = 96 }
+local fx = effect { name = "pyro burst", fps = 24, frames = 96, author = "the roil authors", licence = "MIT" }
 
 local quality = param { "quality", "draft", words = {"draft", "shot", "film"}, help = "how fine its cells are" }
 local fuel    = param { "fuel", 0.13, min = 0, max = 5, unit = "kg/m^3", help = "of the mist; air burns 0.08, and what is more burns black" }

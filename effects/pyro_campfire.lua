@@ -3,7 +3,7 @@
 --
 --   roil render effects/pyro_campfire.lua --frames 48 -o campfire.png
 
-local fx = effect { name = "pyro campfire", fps = 24, frames = 144 }
+local fx = effect { name = "pyro campfire", fps = 24, frames = 144, author = "the roil authors", licence = "MIT" }
 
 local quality = param { "quality", "draft", words = {"draft", "shot", "film"}, help = "how fine its cells are" }
 local gas     = param { "gas", 0.1, min = 0, max = 2, unit = "kg/m^3", help = "that the wood gives off" }

@@ -3,7 +3,7 @@
 --
 --   roil render effects/pyro_dust.lua --frames 20 -o dust.png
 
-local fx = effect { name = "pyro dust", fps = 24, frames = 96 }
+local fx = effect { name = "pyro dust", fps = 24, frames = 96, author = "the roil authors", licence = "MIT" }
 
 local quality = param { "quality", "draft", words = {"draft", "shot", "film"}, help = "how fine its cells are" }
 local dust    = param { "dust", 0.12, min = 0, max = 1, unit = "kg/m^3", help = "in the air of the room; air burns 0.23 of it" }

@@ -3,7 +3,7 @@
 --
 --   roil render effects/pyro_mushroom.lua --frames 72 -o mushroom.png
 
-local fx = effect { name = "pyro mushroom", fps = 24, frames = 120 }
+local fx = effect { name = "pyro mushroom", fps = 24, frames = 120, author = "the roil authors", licence = "MIT" }
 
 local quality = param { "quality", "draft", words = {"draft", "shot", "film"}, help = "how fine its cells are" }
 local heat    = param { "heat", 3000, min = 300, max = 6000, unit = "K", help = "of the ball at first" }

@@ -3,7 +3,7 @@
 --
 --   roil render effects/pyro_pool.lua --frames 60 -o pool.png
 
-local fx = effect { name = "pyro pool", fps = 24, frames = 144 }
+local fx = effect { name = "pyro pool", fps = 24, frames = 144, author = "the roil authors", licence = "MIT" }
 
 local quality = param { "quality", "draft", words = {"draft", "shot", "film"}, help = "how fine its cells are" }
 local width   = param { "width", 0.9, min = 0.2, max = 2, unit = "m", help = "of the pan" }

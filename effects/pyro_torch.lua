@@ -3,7 +3,7 @@
 --
 --   roil render effects/pyro_torch.lua --frames 40 -o torch.png
 
-local fx = effect { name = "pyro torch", fps = 24, frames = 96 }
+local fx = effect { name = "pyro torch", fps = 24, frames = 96, author = "the roil authors", licence = "MIT" }
 
 local quality = param { "quality", "draft", words = {"draft", "shot", "film"}, help = "how fine its cells are" }
 local jet     = param { "jet", 24, min = 0, max = 40, unit = "m/s", help = "speed of the jet" }

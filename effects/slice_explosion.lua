@@ -8,7 +8,7 @@
 --
 -- Play with `blast` (0 leaves buoyancy alone: a puff of hot air), `heat` and `wobble`.
 
-local fx = effect { name = "slice_explosion", fps = 24, frames = 84 }
+local fx = effect { name = "slice_explosion", fps = 24, frames = 84, author = "the roil authors", licence = "MIT" }
 
 local detail     = param { "detail", 0.5, min = 0.25, max = 4, help = "cells along each edge of a slice, relative to 144 x 160; taken when the effect loads" }
 local rendering  = param { "rendering", "volume", words = {"volume", "particles", "both"}, help = "how the flow is shown" }:get()

@@ -5,7 +5,7 @@
 --   roil render effects/slices.lua --frames 96 --set wobble=0 -o turned.png
 --   roil render effects/slices.lua --frames 96 --set slices.vorticity=0 -o calm.png
 
-local fx = effect { name = "slices", fps = 24, frames = 240 }
+local fx = effect { name = "slices", fps = 24, frames = 240, author = "the roil authors", licence = "MIT" }
 
 local thickness = param { "thickness", 9, min = 0, max = 100, unit = "1/m", help = "how dense the smoke is" }
 local heat      = param { "heat", 1, min = 0, max = 4, help = "temperature of the fire below" }

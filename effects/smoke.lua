@@ -5,7 +5,7 @@
 --   roil render effects/smoke.lua --frames 72 -o smoke.png
 --   roil render effects/smoke.lua --frames 72 --set lbm.buoyancy_heat=10 -o hotter.png
 
-local fx = effect { name = "smoke", fps = 24, frames = 240 }
+local fx = effect { name = "smoke", fps = 24, frames = 240, author = "the roil authors", licence = "MIT" }
 
 local density = param { "density", 7, min = 0, max = 100, unit = "1/m", help = "how thick the smoke is" }
 local heat    = param { "heat", 1, min = 0, max = 4, help = "temperature of the fire" }

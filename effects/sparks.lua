@@ -8,7 +8,7 @@
 -- Play with `rate`, `speed` and `spread`, with `streak`, which is how long the shutter stays open, and
 -- with `bounce`.
 
-local fx = effect { name = "sparks", fps = 24, frames = 96 }
+local fx = effect { name = "sparks", fps = 24, frames = 96, author = "the roil authors", licence = "MIT" }
 
 local rate   = param { "rate", 9000, min = 0, max = 40000, unit = "1/s", help = "sparks that fly off" }
 local speed  = param { "speed", 5.5, min = 0, max = 20, unit = "m/s", help = "of the fastest" }

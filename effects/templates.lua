@@ -5,7 +5,7 @@
 --   roil render effects/templates.lua --frames 48 --set stir=tongues -o tongues.png
 --   roil live effects/templates.lua
 
-local fx = effect { name = "templates", fps = 24, frames = 96 }
+local fx = effect { name = "templates", fps = 24, frames = 96, author = "the roil authors", licence = "MIT" }
 
 local stir     = param { "stir", "puffs", words = {"nothing", "puffs", "tongues", "eddies", "wrinkles"}, help = "which templates are put into the flow" }:get()
 local strength = param { "strength", 1, min = 0, max = 10, help = "factor of theirs" }

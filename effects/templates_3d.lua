@@ -5,7 +5,7 @@
 --   roil render effects/templates_3d.lua --frames 48 --set stir=rings -o rings.png
 --   roil live effects/templates_3d.lua
 
-local fx = effect { name = "templates 3d", fps = 24, frames = 96 }
+local fx = effect { name = "templates 3d", fps = 24, frames = 96, author = "the roil authors", licence = "MIT" }
 
 local stir     = param { "stir", "puffs", words = {"nothing", "puffs", "tongues", "rings", "tubes"}, help = "which templates are put into the gas" }:get()
 local strength = param { "strength", 1, min = 0, max = 10, help = "factor of theirs" }

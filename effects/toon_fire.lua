@@ -10,7 +10,7 @@
 -- does the same for what was marched, and gives each band the colour of a palette; outline inks where
 -- depth jumps and where surfaces turn. None of them knows of the others.
 
-local fx = effect { name = "toon_fire", fps = 12, frames = 144 }
+local fx = effect { name = "toon_fire", fps = 12, frames = 144, author = "the roil authors", licence = "MIT" }
 
 local toon      = param { "toon", "cycle", words = {"cycle", "on", "off"}, help = "whether it is drawn: by the timeline, always or never" }
 local glow      = param { "glow", "cycle", words = {"cycle", "on", "off"}, help = "whether what is bright blooms" }

@@ -1,5 +1,5 @@
 -- A ball of fire of noise alone: nothing is simulated, so it is quick to draw and to change.
-local fx = effect { name = "burst", fps = 24, frames = 72 }
+local fx = effect { name = "burst", fps = 24, frames = 72, author = "the roil authors", licence = "MIT" }
 
 local density = param { "density", 12, min = 0, max = 200, unit = "1/m", help = "how thick it is" }
 local glow    = param { "glow", 3, min = 0, max = 50, help = "factor of its light" }

@@ -1,5 +1,5 @@
 -- Gas that burns: fuel comes out of a small pool, and goes up in flames and soot.
-local fx = effect { name = "fire", fps = 24, frames = 120 }
+local fx = effect { name = "fire", fps = 24, frames = 120, author = "the roil authors", licence = "MIT" }
 
 local smoke = param { "smoke", 8700, min = 0, max = 20000, unit = "m^2/kg", help = "what 1 kg of soot hides" }
 local glow  = param { "glow", 2, min = 0, max = 50, help = "factor of the fire's light" }

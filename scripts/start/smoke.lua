@@ -1,5 +1,5 @@
 -- Smoke that is simulated: hot air rises from a small fire and breaks into eddies.
-local fx = effect { name = "smoke", fps = 24, frames = 240 }
+local fx = effect { name = "smoke", fps = 24, frames = 240, author = "the roil authors", licence = "MIT" }
 
 local density = param { "density", 12, min = 0, max = 100, unit = "1/m", help = "how thick the smoke is" }
 local heat    = param { "heat", 1, min = 0, max = 4, help = "temperature of the fire" }

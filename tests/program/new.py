@@ -79,6 +79,9 @@ return fx
         for one in listed:
             self.assertTrue(one["summary"].endswith((".", ")", ":")) or len(one["summary"]) > 20, one)
             self.assertTrue(os.path.exists(one["picture"]), one)
+            if not one["name"].startswith("step-"):  # a lesson is to be short
+                with open(one["file"], encoding="utf-8") as file:
+                    self.assertIn('author = "the roil authors", licence = "MIT"', file.read(), one)
         self.assertIn("wrote out/index.html", self.succeeds("info", "effects", "-o", "out/index.html"))
         page = self.read("out/index.html").decode()
         pictures = re.findall(r"base64,([A-Za-z0-9+/=]+)\"", page)
