@@ -245,7 +245,8 @@ void roil_keep_only(roil_effect *e, const char *image);
 // map: 1 to 65536, each with the camera moved by a part of a pixel and within its lens, at moments
 // spread over `shutter` frames, 0 to 1, from the frame on. What a simulation, a sequence with
 // `blend`, a curve or a function moves is blurred by its way; what a script sets frame by frame is
-// not. Call it once, before roil_prepare. False with a message, as for an effect with a reference.
+// not. Call it once, before roil_sheet_create and roil_prepare. False with a message, as for an
+// effect with a reference.
 bool roil_set_samples(roil_effect *e, uint32_t samples, double shutter);
 
 // Compiles the effect and allocates its images for a picture size in pixels, 1 to 16384 each. Call

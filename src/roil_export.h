@@ -84,9 +84,9 @@ typedef struct roil_sheet_options {
     size_t note_count;
 } roil_sheet_options;
 typedef struct roil_sheet roil_sheet;
-// Call it after roil_load and before roil_prepare, which then takes the size of a cell; it sets the
-// effect's camera. NULL with a message, as where nothing says a velocity. Free it before the
-// effect.
+// Call it after roil_load (and roil_set_samples) and before roil_prepare, which then takes the size
+// of a cell; it sets the effect's camera. NULL with a message, as where nothing says a velocity.
+// Free it before the effect.
 roil_sheet *roil_sheet_create(roil_effect *e, const roil_sheet_desc *desc);
 // Whether the medium of a march (NULL: the first) repeats by itself after so many seconds, as far
 // as what it is made of tells: curves and functions, phases and drifts of noise with a `period`.

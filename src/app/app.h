@@ -93,6 +93,7 @@ bool app_may_write_here(const char *path);
 char *app_quoted(arena *memory, const char *text);
 
 bool app_parse_samples(const char *option, const char *text, uint32_t *out); // 1 to 65536 a pixel
+bool app_check_shutter(double frames);                                       // 0 to 1
 
 // ---- parts of the work, for machines that share it --------------------------------------------
 

@@ -219,8 +219,7 @@ static bool render_parse(job *j, int argc, const char **argv, poptContext *conte
     if (more) return err_set("'%s': one effect at a time", more);
     if (j->warmup < 0 || j->warmup > 100000)
         return err_set("--warmup %d; accepted: 0 to 100000 frames", j->warmup);
-    if (!(j->shutter >= 0 && j->shutter <= 1))
-        return err_set("--shutter %g; accepted: 0 to 1 frames", j->shutter);
+    if (!app_check_shutter(j->shutter)) return false;
     if (j->samples && j->reference) return err_set("--samples and --reference exclude each other");
     if (j->alpha && j->premultiplied)
         return err_set("--alpha is straight, --premultiplied is not: one of the two");

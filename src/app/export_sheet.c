@@ -25,17 +25,19 @@ typedef struct job {
     app_device device;
     app_frames frames;
     int cell, gutter, camera, crop, all;
-    double loop; // s
-    bool whole;  // it repeats by itself
-    shot *shots; // by frame
+    uint32_t samples; // pictures that a cell is averaged of; 0: it is not
+    double shutter;   // frames
+    double loop;      // s
+    bool whole;       // it repeats by itself
+    shot *shots;      // by frame
     size_t shot_count, shot_capacity;
     char note[256];
     const char *notes[1];
     arena memory;
-    const char *made[16]; // options that make it again
+    const char *made[17]; // options that make it again
 } job;
 
-enum { OPTION_SET = 1, OPTION_PRESET };
+enum { OPTION_SET = 1, OPTION_PRESET, OPTION_SAMPLES };
 
 // ---- options ----------------------------------------------------------------------------------
 
@@ -53,6 +55,7 @@ static bool parse_grid(job *j) {
 static bool take_option(job *j, poptContext context, int option) {
     char *text = poptGetOptArg(context);
     if (option == OPTION_SET) return app_add_set(&j->settings, text);
+    if (option == OPTION_SAMPLES) return app_parse_samples("--samples", text, &j->samples);
     app_add_preset(&j->settings, text);
     return true;
 }
@@ -75,6 +78,7 @@ static bool sheet_check_options(job *j, poptContext context) {
         return err_set("--gutter %d; accepted: 0 to 1024 pixels", j->gutter);
     if (!(j->loop >= 0 && j->loop < 1e5))
         return err_set("--loop %g; accepted: seconds, above 0", j->loop);
+    if (!app_check_shutter(j->shutter)) return false;
     if (j->options.page && strcmp(path_extension(j->options.page), "html") != 0)
         return err_set("--page '%s'; accepted: .html", j->options.page);
     j->desc.cell = (uint32_t)j->cell;
@@ -131,6 +135,9 @@ static bool sheet_parse(job *j, int argc, const char **argv, poptContext *contex
          NULL},
         {"source", '\0', POPT_ARG_STRING, &j->desc.source, 0, "a pass march (default: the first)",
          "NAME"},
+        {"samples", '\0', POPT_ARG_STRING, NULL, OPTION_SAMPLES, "as in roil render", "N"},
+        {"shutter", '\0', POPT_ARG_DOUBLE, &j->shutter, 0,
+         "as in roil render, in frames of the effect", "FRAMES"},
         {"page", '\0', POPT_ARG_STRING, &j->options.page, 0,
          "a page for a browser that plays the sheet, lights it and shows its maps", "FILE.html"},
         {"set", '\0', POPT_ARG_STRING, NULL, OPTION_SET, "as in roil render", "NAME=VALUE"},
@@ -165,6 +172,10 @@ static void list_options(job *j) {
             j->made[count++] = arena_format(&j->memory, "--%s=%s", texts[i][0], texts[i][1]);
     j->made[count++] = arena_format(&j->memory, "--cell=%d", j->cell);
     j->made[count++] = arena_format(&j->memory, "--gutter=%d", j->gutter);
+    if (j->samples) {
+        j->made[count++] = arena_format(&j->memory, "--samples=%u", j->samples);
+        j->made[count++] = arena_format(&j->memory, "--shutter=%.17g", j->shutter);
+    }
     if (j->loop > 0) j->made[count++] = arena_format(&j->memory, "--loop=%.17g", j->loop);
     if (j->crop) j->made[count++] = "--crop";
     if (j->camera) j->made[count++] = "--camera";
@@ -253,7 +264,7 @@ static bool plan(void *user, roil_effect *e) {
     if (!(j->loop > 0 ? plan_loop(j, e, &info) : plan_frames(j, &info))) return false;
     qsort(j->shots, j->shot_count, sizeof *j->shots, by_frame);
     j->desc.first = j->shots[0].frame;
-    j->desc.last = j->shots[j->shot_count - 1].frame;
+    j->desc.last = j->shots[j->shot_count - 1].frame + (j->samples ? j->shutter : 0);
     return true;
 }
 
@@ -308,6 +319,7 @@ static bool export_all(void *user, roil_effect *e) {
     job *j = user;
     if (!app_can_write(j->output)) return false;
     list_options(j);
+    if (j->samples && !roil_set_samples(e, j->samples, j->shutter)) return false;
     roil_sheet *s = roil_sheet_create(e, &j->desc);
     bool done = s && draw(e, s, j->desc.cell, j->shots, j->shot_count, "frames") &&
                 roil_sheet_save(s, j->output, &j->options);
@@ -322,7 +334,7 @@ static bool export_all(void *user, roil_effect *e) {
 }
 
 int export_sheet(int argc, const char **argv) {
-    job j = {.frames.step = 1, .cell = 256, .gutter = 4};
+    job j = {.frames.step = 1, .cell = 256, .gutter = 4, .shutter = 0.5};
     poptContext context;
     int status = sheet_parse(&j, argc, argv, &context)
                      ? app_export_effect(&(app_export){.device = &j.device,

@@ -98,6 +98,10 @@ bool app_parse_samples(const char *option, const char *text, uint32_t *out) {
     return true;
 }
 
+bool app_check_shutter(double frames) {
+    return (frames >= 0 && frames <= 1) || err_set("--shutter %g; accepted: 0 to 1 frames", frames);
+}
+
 // ---- file patterns ----------------------------------------------------------------------------
 
 bool app_has_number(const char *pattern) {

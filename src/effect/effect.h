@@ -176,8 +176,9 @@ typedef struct effect_sheet {
                 // `advect` carries; else the image is zero
 } effect_sheet;
 // Adds passes that see the medium of a march alone: no mesh, sky or sprite shows in it or hides
-// it, though meshes shadow it in EFFECT_MAP_COLOR. Call it as effect_add_volume. False with a
-// message, as where nothing tells a temperature.
+// it, though meshes shadow it in EFFECT_MAP_COLOR. Of samples (effect_set_samples, before it) the
+// images are the means. Call it as effect_add_volume. False with a message, as where nothing tells
+// a temperature.
 bool effect_add_sheet(effect *e, const effect_sheet_desc *desc, effect_sheet *out);
 
 // Whether the medium of that march (NULL: the first) is the same again after so many seconds, by

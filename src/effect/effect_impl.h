@@ -25,8 +25,11 @@ void effect_add_times(effect *e, uint64_t number);
 // samples.c: a frame as several moments that are averaged, and cameras that are moved for it.
 uint32_t effect_moments(const effect *e);            // of a frame, at least 1
 double effect_moment(const effect *e, double frame); // the time of the present one, in frames
-bool effect_antialias(effect *e);                    // where it is wanted; see samples.c
-void effect_move_sight(effect *e, double frame);     // in e->frame, which is evaluated
+// Puts a pass `mean` behind an image, for all that read it; `weighted`: its alpha is what a colour
+// counts in the mean.
+bool effect_add_mean(effect *e, graph_image *image, bool weighted);
+bool effect_antialias(effect *e);                // where it is wanted; see samples.c
+void effect_move_sight(effect *e, double frame); // in e->frame, which is evaluated
 
 // ---- states -----------------------------------------------------------------------------------
 

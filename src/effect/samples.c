@@ -79,14 +79,14 @@ void effect_move_sight(effect *e, double frame) {
 
 // ---- what is averaged -------------------------------------------------------------------------
 
-// Puts a pass `mean` behind an image, for all that read it.
-static bool add_mean(effect *e, graph_image *image) {
+bool effect_add_mean(effect *e, graph_image *image, bool weighted) {
     const float scale = graph_get_desc(e->graph, *image)->scale;
     if (!(scale > 0))
         return err_set("%s: the size of the picture '%s' is fixed, which samples are averaged of",
                        e->file, graph_get_desc(e->graph, *image)->name);
     pass *p = effect_add_pass(e, "mean", NULL, NULL);
-    if (!p || !pass_set_image(p, "source", *image) || !pass_set_scale(p, scale) || !pass_declare(p))
+    if (!p || !pass_set_image(p, "source", *image) || !pass_set_scale(p, scale) ||
+        !pass_set_option(p, "weighted", weighted ? "on" : "off") || !pass_declare(p))
         return false;
     graph_image mean = pass_output(p, "color");
     pass_redirect(&e->host, *image, mean, p);
@@ -116,7 +116,7 @@ static bool is_averaged(const effect *e, graph_image image) {
 static bool average(effect *e, graph_image *image) {
     if (!image->id || is_averaged(e, *image)) return true;
     graph_image mean = mean_of(e, *image);
-    if (!mean.id) return add_mean(e, image);
+    if (!mean.id) return effect_add_mean(e, image, false);
     *image = mean;
     return true;
 }

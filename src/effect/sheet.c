@@ -99,7 +99,7 @@ bool effect_take_light(const pass *march, pass *maps) {
 }
 
 // As the effect's own last pass shows its picture, but for the bloom, which is of the picture.
-static bool add_final(effect *e, pass *maps, graph_image *out) {
+static bool add_final(effect *e, graph_image source, graph_image *out) {
     pass *last = NULL;
     for (size_t i = 0; i < e->pass_count; i++)
         if (pass_is(e->passes[i], "final")) last = e->passes[i];
@@ -110,8 +110,18 @@ static bool add_final(effect *e, pass *maps, graph_image *out) {
         pass_add_source(p, last);
         if (exposure.id && !pass_set_image(p, "exposure", exposure)) return false;
     }
-    if (!pass_set_image(p, "source", pass_output(maps, "color")) || !pass_declare(p)) return false;
+    if (!pass_set_image(p, "source", source) || !pass_declare(p)) return false;
     *out = pass_output(p, "color");
+    return true;
+}
+
+// Of the moments of a frame the mean is shown.
+static bool average_maps(effect *e, graph_image images[EFFECT_MAPS]) {
+    for (int i = 0; e->samples && i < EFFECT_MAPS; i++) {
+        const bool weighted =
+            i == EFFECT_MAP_MOTION || i == EFFECT_MAP_NORMAL || i == EFFECT_MAP_HEAT;
+        if (images[i].id && !effect_add_mean(e, &images[i], weighted)) return false;
+    }
     return true;
 }
 
@@ -148,7 +158,10 @@ bool effect_add_sheet(effect *e, const effect_sheet_desc *desc, effect_sheet *ou
     for (int i = 0; i < EFFECT_MAPS; i++)
         if (wanted[i] && names[i] && (i != EFFECT_MAP_MOTION || out->moves))
             out->images[i] = pass_output(maps, names[i]);
-    return !wanted[EFFECT_MAP_SHOWN] || add_final(e, maps, &out->images[EFFECT_MAP_SHOWN]);
+    graph_image *color = &out->images[EFFECT_MAP_COLOR];
+    if (wanted[EFFECT_MAP_SHOWN]) *color = pass_output(maps, "color");
+    return average_maps(e, out->images) &&
+           (!wanted[EFFECT_MAP_SHOWN] || add_final(e, *color, &out->images[EFFECT_MAP_SHOWN]));
 }
 
 bool effect_repeats(effect *e, const char *source, double seconds, strbuf *why) {

@@ -289,6 +289,25 @@ class Sheets(Case):
         self.assertAlmostEqual(y, told["pivot"][1] * 64, delta=1.5)
         self.assertGreater(area, 1000)
 
+    def test_cells_are_the_means_of_a_shutter(self):
+        open_ = ["--frames", "1", "--samples", "6", "--shutter"]
+        blurred = {}
+        for shutter in ("0", "1"):
+            told = self.export(ROLLING, *open_, shutter, *SHORT)
+            sheet, metre = self.picture("fire.png"), 64 / told["size_m"][0]
+            x, _, area = middle(sheet, 2, 0)
+            way = 0.1 * float(shutter)  # of the ball, in metres
+            self.assertAlmostEqual(x, told["pivot"][0] * 64 + 0.5 * way * metre, delta=0.1)
+            self.assertAlmostEqual(area, math.pi * (0.5 * metre) ** 2, delta=0.03 * area)
+            blurred[shutter] = sum(9 < cell(sheet, 2, 0, x, y)[3] < 246 for x in range(64) for y in range(64))
+        self.assertGreater(blurred["1"], blurred["0"] + 50)
+        self.assertEqual(told["made"]["options"][-3:-1], ["--samples=6", "--shutter=1"])
+        # What is the mean of a few moments, at the edges, is one of what was there.
+        told = self.export(CARRIED, *open_, "1", "--maps", "motion", "--grid", "1x1", "--cell", "32", output="fire.exr")
+        motion = self.floats("fire-motion.exr")
+        for c, metres in ("R", 0.1), ("G", 0.2):
+            self.assertLess(max(abs(v - metres / told["size_m"][0]) for v in motion[c]), 1e-3)
+
     def test_six_lights_are_those_of_six_pictures(self):
         told = self.export(LIT % "", "--frames", "1", "--grid", "1x1", "--cell", "48", "--maps", "six-way", output="six.exr")
         rigs = self.floats("six-right-top-back.exr"), self.floats("six-left-bottom-front.exr")
@@ -435,6 +454,7 @@ return fx
         self.write("effect.lua", ROLLING)
         for says, *options in (
                 ["--grid '8'", "--grid", "8"],
+                ["--shutter 2; accepted: 0 to 1 frames", "--shutter", "2"],
                 ["map 'colour'; did you mean 'color'?", "--maps", "colour"],
                 ["engine 'unty'; did you mean 'unity'?", "--for", "unty"],
                 ["light 'dark'", "--light", "dark"],
@@ -444,7 +464,7 @@ return fx
                 ["16 frames in 4 cells", "--frames", "1-16", "--grid", "2x2"],
                 ["a gutter of 40 pixels", "--cell", "64", "--gutter", "40"],
                 ["a loop of 9 s", "--loop", "9"]):
-            message = self.fails(2 if options[0] in ("--grid", "--frames", "--loop") else 1, says, "export", "sheet",
+            message = self.fails(2 if options[0] in ("--grid", "--shutter", "--frames", "--loop") else 1, says, "export", "sheet",
                                  "effect.lua", "-o", "fire.png", *options)
             self.assertFalse(os.path.exists(self.path("fire.json")), message)
         self.fails(1, "a page needs a .png", "export", "sheet", "effect.lua", "-o", "fire.exr", "--page", "fire.html")
