@@ -96,8 +96,8 @@ bool roil_repeats(roil_effect *e, const char *source, double seconds, char *why,
 // from one to the other.
 bool roil_sheet_add(roil_sheet *s, uint32_t cell, double weight);
 // Adds the last frame as what one of the last cells becomes, and how far it has by then, 0 to 1:
-// for loops. Both are moved onto each other along the optical flow between their colours, where
-// libroil-flow is, and cross-faded.
+// for loops. Both are cross-faded, and moved onto each other along the optical flow between their
+// colours where libroil-flow is and that brings them together.
 bool roil_sheet_dissolve(roil_sheet *s, uint32_t cell, double part);
 // Finds the part of a cell that is used in any of the first `count`, which show frames in rising
 // order, and half of the largest step from one to the next beside it. The sheet's light must be

@@ -1,6 +1,7 @@
 // The end of a loop, where each cell becomes what came before the first one: two pictures that
 // differ are moved onto each other along the optical flow between them while one fades into the
-// other, so that edges stay single. Where there is no such flow they fade in place.
+// other, so that edges stay single. They fade in place where there is no such flow, or where it
+// does not bring them together: then it would only blur what it moves.
 #include "base/error.h"
 #include "base/memory.h"
 #include "media/optical_flow.h"
@@ -9,6 +10,9 @@
 #include <string.h>
 
 enum { REACH = 6 }; // a pixel moves a cell's side divided by this at most
+// Share of the squared difference that may be left when both are moved: it is 0.04 to 0.07 of a
+// puff that rises, and 0.29 to 0.57 of noise that drifts (scripts/bench/README.md).
+static const float left_at_most = 0.15f;
 
 static const float *known(const sheet *s, uint32_t cell, int x, int y) {
     static const float nothing[4];
@@ -27,9 +31,13 @@ static void add_sample(const sheet *s, uint32_t cell, float x, float y, float we
     }
 }
 
+static sheet_map colors_of(const roil_sheet *s) {
+    return s->maps[SHEET_SHOWN].pixels ? SHEET_SHOWN : SHEET_SCENE;
+}
+
 // The way from one picture to the other at each place, the mean of both directions; all 0: unknown.
 static bool find_way(const roil_sheet *s, uint32_t cell, uint32_t slot, float *way) {
-    const sheet_map seen = s->maps[SHEET_SHOWN].pixels ? SHEET_SHOWN : SHEET_SCENE;
+    const sheet_map seen = colors_of(s);
     const size_t pixels = (size_t)s->cell * s->cell;
     uint8_t *from = mem_alloc(pixels), *to = mem_alloc(pixels);
     float *back = mem_alloc(2 * pixels * sizeof *back);
@@ -46,6 +54,29 @@ static bool find_way(const roil_sheet *s, uint32_t cell, uint32_t slot, float *w
     mem_free(to);
     mem_free(back);
     return done;
+}
+
+// Sets whether both pictures look alike once each is moved by half of the way.
+static bool find_whether_alike(const roil_sheet *s, uint32_t cell, uint32_t slot, float *way,
+                               bool *alike) {
+    const sheet *own = &s->maps[colors_of(s)], *before = &s->before[colors_of(s)];
+    float still = 0, moved = 0;
+    if (!find_way(s, cell, slot, way)) return false;
+    for (uint32_t y = 0; y < s->cell; y++)
+        for (uint32_t x = 0; x < s->cell; x++, way += 2) {
+            const float at[] = {(float)x, (float)y}, half[] = {way[0] / 2, way[1] / 2};
+            float here[4] = {0}, there[4] = {0};
+            add_sample(own, cell, at[0], at[1], 1, here);
+            add_sample(before, slot, at[0], at[1], -1, here);
+            add_sample(own, cell, at[0] - half[0], at[1] - half[1], 1, there);
+            add_sample(before, slot, at[0] + half[0], at[1] + half[1], -1, there);
+            for (int c = 0; c < 4; c++) {
+                still += fminf(here[c] * here[c], 1);
+                moved += fminf(there[c] * there[c], 1);
+            }
+        }
+    *alike = moved < left_at_most * still;
+    return true;
 }
 
 // `rate`: how much of the way a cell is after this one.
@@ -89,7 +120,9 @@ bool sheet_blend(roil_sheet *s, double fps) {
     float *way = mem_alloc(2 * pixels * sizeof *way);
     s->flows = s->fade && (s->maps[SHEET_SHOWN].pixels || s->maps[SHEET_SCENE].pixels) &&
                optical_flow_load();
-    bool done = true;
+    const uint32_t middle = s->fade / 2; // where both are seen alike
+    bool done = !s->flows || find_whether_alike(s, first + middle, middle, way, &s->flows);
+    if (!s->flows) memset(way, 0, 2 * pixels * sizeof *way);
     for (uint32_t i = 0; done && i < s->fade; i++) {
         const float before = i ? s->parts[i - 1] : 0, after = i + 1 < s->fade ? s->parts[i + 1] : 1;
         const float rate = 0.5f * (after - before) * (float)fps / (float)s->cell;

@@ -376,14 +376,20 @@ return fx
         told = self.export(RISING % ("worley", ""), "--loop", "1.5", "--grid", "16x1", "--cell", "32")
         self.assertIn("dissolve into what came before the first, since the drift of 'worley' repeats every 2 s",
                       told["notes"][0])
-        blend = "moved along optical flow" if os.path.exists(FLOW) else "in place"
-        self.assertEqual(told["dissolve"], {"cells": 4, "blend": blend})
+        self.assertEqual(told["dissolve"], {"cells": 4, "blend": "in place"})  # what flow does not bring together
         sheet = self.picture("fire.png")
         seam, usual = self.apart(sheet, 16, 15, 0), [self.apart(sheet, 16, i, i + 1) for i in range(11)]
         self.assertLess(seam, 1.3 * max(usual))
         plain = self.export(RISING % ("worley", ""), "--frames", "5-19", "--grid", "16x1", "--cell", "32")
         self.assertEqual(plain["frames"], 15)
         self.assertGreater(self.apart(self.picture("fire.png"), 16, 14, 0), 2 * seam)
+
+    def test_what_has_only_moved_is_moved_back_while_it_dissolves(self):
+        ball = "function(t) return {0, 0, 0.5 + 0.2 * t} end, radius = 0.5, falloff = 0.3"
+        moving = RISING.replace("{0, 0, 1}, radius = 1, falloff = 0.3", ball).replace("smoothstep(0.3, 0.6, lumps)", "1")
+        told = self.export(moving % ("worley", ""), "--loop", "1.5", "--grid", "16x1", "--cell", "32")
+        blend = "moved along optical flow" if os.path.exists(FLOW) else "in place"
+        self.assertEqual(told["dissolve"], {"cells": 4, "blend": blend})
 
     def turned(self, told, light):
         """Settings by which the sun shines from `light`: right, up, towards the camera."""
