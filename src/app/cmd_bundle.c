@@ -36,9 +36,11 @@ static int make(roil *r, const char *effect, const char *output) {
     if (done) warn_of_rights(in);
     if (done)
         app_print(stdout,
-                  "wrote %s: %zu file%s, %.2f MB. `roil live %s` opens it, `tar -xf %s` unpacks "
+                  "wrote %s: %zu file%s, %.1f %s. `roil live %s` opens it, `tar -xf %s` unpacks "
                   "it.\n",
-                  file, in->count, in->count == 1 ? "" : "s", (double)bytes * 1e-6, file, file);
+                  file, in->count, in->count == 1 ? "" : "s",
+                  (double)bytes * (bytes < 1000000 ? 1e-3 : 1e-6), bytes < 1000000 ? "kB" : "MB",
+                  file, file);
     roil_free_inputs(in);
     return done ? APP_DONE : app_fail_input();
 }
