@@ -70,7 +70,9 @@ static const field *grid_field(effect *e, field_grid *grid, const char *name) {
         first = grid->find_field(grid, name, &components);
     else if (strcmp(name, grid->label) != 0)
         first = err_set("%s: no field '%s'; it has one, of its own name", grid->label, name) - 1;
-    return first < 0 ? NULL : field_grid_channel(&e->memory, grid, first, components);
+    if (first < 0) return NULL;
+    const field *node = field_grid_channel(&e->memory, grid, first, components);
+    return strcmp(name, "velocity") == 0 ? field_of_effect_time(&e->memory, grid, node) : node;
 }
 
 static const field *medium_field(effect *e, const pass *p, const char *name) {

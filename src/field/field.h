@@ -164,6 +164,8 @@ bool field_samples(const field *node, const field_grid *grid, int image);
 // added. NULL: nothing in it says one. Grids are asked for it, so call it before they play. Nodes
 // live in `memory`.
 const field *field_velocity(arena *memory, const field *node);
+// A grid's velocity in metres by a second of the effect, not of the grid's own time.
+const field *field_of_effect_time(arena *memory, const field_grid *grid, const field *velocity);
 // Whether it says the same again after so many seconds, from the context's time on, as far as that
 // can be told from what it is made of; `why` then gets what does not.
 bool field_repeats(const field *node, const field_context *context, double seconds, strbuf *why);

@@ -53,6 +53,8 @@ struct field_grid {
     bool blends;       // may ever have blend > 0: the shader then samples both sets
     bool never_waits;  // never waits for data: another frame stands in for one that is late
     bool simulated;    // each frame follows from the one before
+    float time_scale;  // seconds that pass in it, and that its velocity is by, in one of the
+                       // effect's; 0: 1
     const field_extrusion *extruded; // images are slices round an axis; NULL: they fill the box
     const struct field *content;     // of a bake: what it holds; NULL: not known
     const char *label;               // what the script calls it; NULL: it has no name

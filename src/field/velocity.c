@@ -18,6 +18,12 @@ typedef struct search {
 
 static const field *find(search *s, const field *node);
 
+const field *field_of_effect_time(arena *memory, const field_grid *grid, const field *velocity) {
+    const float scale[4] = {grid->time_scale};
+    if (!(scale[0] > 0) || scale[0] == 1) return velocity;
+    return compose_two(memory, "mul", velocity, field_constant(memory, 1, scale));
+}
+
 static const field *of_grid(search *s, const field *node) {
     static const char *const names[] = {"velocity", "vel", "v"};
     field_grid *grid = (field_grid *)(uintptr_t)node->object;
@@ -25,7 +31,10 @@ static const field *of_grid(search *s, const field *node) {
     if (grid->content && !grid->repeats) return find(s, grid->content);
     for (size_t i = 0; i < COUNT_OF(names) && grid->find_field && first < 0; i++)
         first = grid->find_field(grid, names[i], &components);
-    return first >= 0 && components == 3 ? field_grid_channel(s->memory, grid, first, 3) : NULL;
+    return first >= 0 && components == 3
+               ? field_of_effect_time(s->memory, grid,
+                                      field_grid_channel(s->memory, grid, first, 3))
+               : NULL;
 }
 
 static const field *of_warp(search *s, const field *node) {

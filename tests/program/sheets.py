@@ -87,6 +87,14 @@ local dust = deposit { chaff, box = { min = {-2, -1, 0}, max = {2, 1, 2} }, reso
 fx.output = final { march { density = dust.density * 2, steps = 48 } }.color
 return fx
 """
+LAPSE = """
+local fx = effect { name = "lapse", fps = 10, frames = 16 }
+fx.camera = camera { eye = {0, -5, 0.8}, target = {0, 0, 0.8}, orthographic = 1.6 }
+local air = lbm { size = {16, 16, 16}, voxel_size = 0.1, speed = 2, buoyancy_heat = 8, time_scale = %g }
+air:source { shape = sphere { position = {0, 0, 0.5}, radius = 0.3 }, density = 1, temperature = 1, rate = 12 }
+fx.output = final { march { density = air.density * 4, radiance = {1, 1, 1}, steps = 16 } }.color
+return fx
+"""
 # Lumps that rise by two cells of their lattice a second, which repeats after four.
 RISING = """
 local fx = effect { name = "rising", fps = 12, frames = 60 }
@@ -288,6 +296,21 @@ class Sheets(Case):
         x, y, area = middle(self.picture("fire.png"), 2, 0)  # half of it lies below the ground
         self.assertAlmostEqual(y, told["pivot"][1] * 64, delta=1.5)
         self.assertGreater(area, 1000)
+
+    def test_motion_and_velocity_are_by_seconds_of_the_effect(self):
+        """Air in time lapse, at the same of its own times."""
+        told = {}
+        for scale, frame in (1, "9"), (4, "3"):
+            self.export(LAPSE % scale, "--frames", frame, "--grid", "1x1", "--cell", "32", "--maps", "motion", "--camera",
+                        output="air.exr")
+            self.succeeds("export", "vdb", "effect.lua", "-o", "air.vdb", "--frames", frame, "--fields", "velocity", "--box",
+                          "-0.8,-0.8,0,0.8,0.8,1.6")
+            self.succeeds("export", "raw", "air.vdb", "-o", "air.raw", "--grid", "velocity", "--type", "f32")
+            raw = self.read("air.raw")
+            told[scale] = (self.floats("air-motion.exr")["G"], struct.unpack(f"<{len(raw) // 4}f", raw))
+        for once, four in zip(told[1], told[4]):
+            self.assertGreater(max(once), 0.01)
+            self.assertAlmostEqual(max(four), 4 * max(once), delta=0.02 * max(four))
 
     def test_cells_are_the_means_of_a_shutter(self):
         open_ = ["--frames", "1", "--samples", "6", "--shutter"]

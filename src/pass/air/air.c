@@ -89,6 +89,7 @@ field_grid *air_open(air *a, const air_kind *kind, pass *p, const pass_air_desc 
                  .size = {desc->size[0], desc->size[1], desc->size[2]},
                  .channel_count = 4 * (int)kind->output_count,
                  .simulated = true,
+                 .time_scale = (float)desc->time_scale,
                  .state = {.active = box_of(desc)},
                  .exchange = exchange_grids,
                  .field_name = field_name,
