@@ -27,6 +27,11 @@ size_t roil_graph_links(roil_effect *e, roil_graph_link *out, size_t capacity);
 // 4". Free it with roil_free. NULL with a message: there is no such pass.
 char *roil_graph_fields(roil_effect *e, const char *pass);
 
+// Writes a line on what makes the last frame slow and what would make it faster: a noise that is
+// most of the work of the pass that takes most of the time, and that a tile would hold. Returns
+// whether there is such a thing, as far as is known: it goes by roil_times and roil_counters.
+bool roil_slow(roil_effect *e, char *out, size_t capacity);
+
 #ifdef __cplusplus
 }
 #endif

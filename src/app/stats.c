@@ -33,6 +33,7 @@ struct app_stats {
     double began, ended;       // clock_seconds
     roil_readout readouts[MAX_READOUTS]; // after the last frame; strings are the effect's
     size_t readout_count;
+    char slow[256]; // of the last frame (roil_slow); "": nothing
 };
 
 app_stats *app_stats_create(void) {
@@ -54,6 +55,7 @@ void app_stats_add(app_stats *s, roil_effect *e, double frame, double seconds) {
     s->plays = roil_get_playback(e, &s->last);
     s->readout_count = roil_readouts(e, s->readouts, MAX_READOUTS);
     if (s->readout_count > MAX_READOUTS) s->readout_count = MAX_READOUTS;
+    if (!roil_slow(e, s->slow, sizeof s->slow)) s->slow[0] = 0;
     s->ended = clock_seconds();
     if (s->count > 1) return;
     s->first = s->last;
@@ -153,6 +155,7 @@ void app_stats_print(const app_stats *s) {
     mem_free(values);
     print_playback(s);
     print_readouts(s);
+    if (s->slow[0]) app_print(stdout, "%s\n", s->slow);
 }
 
 // ---- file -------------------------------------------------------------------------------------
@@ -214,6 +217,7 @@ bool app_stats_save(const app_stats *s, const char *file, const roil *r, const c
     json_object_set_new(root, "frames", frames);
     if (s->readout_count) json_object_set_new(root, "readouts", readouts_json(s));
     if (s->plays) json_object_set_new(root, "sequences", playback_json(s));
+    if (s->slow[0]) json_object_set_new(root, "slow", json_string(s->slow));
     char *text = json_text(root, JSON_INDENT(1) | JSON_REAL_PRECISION(6));
     json_decref(root);
     if (!text) return err_set("%s: the statistics cannot be written as JSON", file);

@@ -1,7 +1,11 @@
-// The graph, for tools that show it.
+// The graph, for tools that show it, and what makes it slow.
 #include "base/error.h"
+#include "base/map.h"
 #include "base/memory.h"
+#include "field/field.h"
 #include "roil/roil_impl.h"
+#include <inttypes.h>
+#include <stdio.h>
 #include <string.h>
 
 // A part of a pass is called "LABEL.PART"; labels have no dots.
@@ -74,4 +78,79 @@ char *roil_graph_fields(roil_effect *e, const char *name) {
     }
     strbuf_append(&text, "", 0);
     return roil_leave_text(text.text);
+}
+
+// ---- what is slow -----------------------------------------------------------------------------
+
+static const double most = 0.5; // of the time of a frame, or of the work of a pass's fields
+static const uint64_t texels = 64 * 64 * 64; // of a tile, unless the script says another resolution
+
+typedef struct work { // rough operations at a point, of all nodes once
+    map seen;
+    double all, dearest;
+    const field *noise; // the dearest one; NULL: none
+    int octaves;        // of it
+} work;
+
+static void work_add(work *w, const field *node) {
+    if (node->uniform || map_find(&w->seen, node, 0)) return;
+    map_set(&w->seen, node, 0, 1);
+    for (size_t i = 0; i < FIELD_MAX_ARGS && node->args[i]; i++) work_add(w, node->args[i]);
+    const bool noise = strcmp(node->kind->group, "noise") == 0;
+    const field *octaves = noise ? node->args[1] : NULL; // as in every row of noise
+    const int count = octaves && field_is_constant(octaves) ? (int)(octaves->value[0] + 0.5f) : 1;
+    const double own = (double)node->kind->cost * count;
+    w->all += own;
+    if (!noise || own <= w->dearest) return;
+    w->noise = node;
+    w->dearest = own;
+    w->octaves = count;
+}
+
+// The pass of the script that takes most by evaluating its fields, and the share of the frame that
+// this takes. NULL: none takes much.
+static pass *slowest(roil_effect *e, double *share) {
+    roil_time times[256];
+    size_t count = roil_times(e, times, COUNT_OF(times)), worst = 0;
+    double sum = 0;
+    if (count > COUNT_OF(times)) count = COUNT_OF(times);
+    for (size_t i = 0; i < count; i++) {
+        sum += times[i].milliseconds;
+        if (times[i].milliseconds > times[worst].milliseconds) worst = i;
+    }
+    *share = sum > 0 ? times[worst].milliseconds / sum : 0;
+    const char *part = *share >= most ? strchr(times[worst].pass, '.') : NULL;
+    const bool fields = *share >= most && (!part || strcmp(part, ".medium") == 0);
+    return fields ? owner_of(e, times[worst].pass) : NULL;
+}
+
+static uint64_t samples_of(pass *p) {
+    const shader_interface *face = pass_interface(p);
+    uint64_t values[64];
+    if (!face->counter_count || face->counter_count > COUNT_OF(values) ||
+        !pass_read_counters(p, values))
+        return 0;
+    for (size_t i = 0; i < face->counter_count; i++)
+        if (strcmp(face->counters[i].name, "samples") == 0) return values[i];
+    return 0;
+}
+
+bool roil_slow(roil_effect *e, char *out, size_t capacity) {
+    double share;
+    pass *p = slowest(e, &share);
+    const uint64_t samples = p ? samples_of(p) : 0;
+    if (samples < 2 * texels) return false; // also where they are not counted
+    work w = {0};
+    for (size_t i = 0; i < pass_interface(p)->field_count; i++) {
+        const field *node = pass_get_field(p, i);
+        if (node) work_add(&w, node);
+    }
+    map_free(&w.seen);
+    if (!w.noise || w.dearest < most * w.all) return false;
+    snprintf(out, capacity,
+             "%s takes %.0f %%: %s with %d octave%s is evaluated up to %.1f million times; "
+             "`:tile()` evaluates it %" PRIu64 " times",
+             pass_label(p), 100 * share, w.noise->kind->name, w.octaves, w.octaves == 1 ? "" : "s",
+             (double)samples * 1e-6, texels);
+    return true;
 }

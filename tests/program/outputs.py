@@ -359,6 +359,17 @@ class Statistics(Case):
             samples.append(json.loads(self.read("stats.json"))["frames"][0]["counters"]["march.samples"])
         self.assertGreater(samples[1], 2 * samples[0])
 
+    def test_a_noise_that_takes_most_of_the_time_is_named(self):
+        for made in ("", ":tile()"):
+            effect = VOLUME.replace("distance = 6", "distance = 3") % f"sphere {{ position = {{1, 1, 1}} }} * worley {{ octaves = 3 }}{made}"
+            printed = self.render(effect, "--frames", "1-2", "--stats", "stats.json", "--set", "march.steps=256",
+                                  "--set", "march.early_exit=0", output="%d.png")
+            slow = json.loads(self.read("stats.json")).get("slow")
+            self.assertEqual(slow is None, bool(made), slow)
+            if slow:
+                self.assertRegex(slow, r"^march takes \d+ %: worley with 3 octaves is evaluated up to [\d.]+ million times; `:tile\(\)` evaluates it")
+                self.assertIn(slow, printed)
+
 
 def small_disk():
     signal.signal(signal.SIGXFSZ, signal.SIG_IGN)  # writing fails instead, as on a full disk
