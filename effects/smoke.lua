@@ -7,7 +7,7 @@
 
 local fx = effect { name = "smoke", fps = 24, frames = 240, author = "the roil authors", licence = "MIT" }
 
-local density = param { "density", 7, min = 0, max = 100, unit = "1/m", help = "how thick the smoke is" }
+local density = param { "density", 12, min = 0, max = 100, unit = "1/m", help = "how thick the smoke is" }
 local heat    = param { "heat", 1, min = 0, max = 4, help = "temperature of the fire" }
 
 -- Small enough for a computer without a graphics card. On one that has it, try {96, 96, 192} cells of 0.04 m.
@@ -24,18 +24,21 @@ air:source {
     density = 1 + flicker, temperature = heat * (1 + flicker), rate = 12,
 }
 
--- Noise that the air carries along eats at the smoke where that is thin.
-local lumps = worley { frequency = 1.5, octaves = 3, persistence = 0.55, lacunarity = 2.1, seed = 4 }
+-- Noise stands for what is finer than a cell: eddies fold the smoke, and lumps that the air carries along
+-- make it thick here and thin there, and eat it away where little is left.
+local folds = curl { frequency = 1.1, octaves = 3, persistence = 0.6, drift = {0, 0, -0.8}, seed = 9 }:tile()
+local lumps = worley { frequency = 2, octaves = 3, persistence = 0.6, lacunarity = 2.2, seed = 4 }
               :tile():advect(air.velocity, { period = 0.8, mean = 0.48 })
-local cover = clamp(air.density * 4, 0, 1)
-local smoke = cover * smoothstep(0, 0.6, cover - 1.5 * (1 - lumps) * (1 - 0.5 * cover))
+local cover = clamp(air.density:warp(folds, 0.25) * 1.8, 0, 1)
+local smoke = cover * smoothstep(0, 0.9, cover - 1.3 * (1 - lumps) * (1 - 0.35 * cover))
 
+-- A low sun from the side, a little from behind: each billow throws its shadow on the next.
 fx.camera = orbit { target = {0, 0, 3.4}, distance = 15, yaw = 25, pitch = 3, fov = 34 }
-fx.sun    = sun { azimuth = 215, elevation = 36, color = {1, 0.90, 0.76}, strength = 8 }
-fx.sky    = sky { zenith = {0.04, 0.11, 0.32}, horizon = {0.32, 0.42, 0.56}, strength = 0.7 }
+fx.sun    = sun { azimuth = 190, elevation = 28, color = {1, 0.84, 0.64}, strength = 9 }
+fx.sky    = sky { zenith = {0.02, 0.05, 0.16}, horizon = {0.14, 0.20, 0.32}, strength = 0.6 }
 
-local lit    = lighting { density = smoke * density, albedo = {0.96, 0.96, 0.97}, anisotropy = 0.2, sampling = "cubic" }
-local scene  = geometry { mesh { "data/ground.obj", color = {0.7, 0.75, 0.6} } }
+local lit    = lighting { density = smoke * density, albedo = {0.86, 0.86, 0.88}, anisotropy = 0.35, sampling = "linear" }
+local scene  = geometry { mesh { "data/ground.obj", color = {0.4, 0.42, 0.42} } }
 local solid  = shade { from = {scene, lit}, haze = 0.01 }
 local volume = march { from = {lit, scene}, steps = 128 }
 
