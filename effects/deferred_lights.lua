@@ -32,6 +32,7 @@ local function chance(step) return fract(light_random * step) end
 local around = light_index * (2 * math.pi / lights:get()) + time * speed * lerp(0.4, 1.6, chance(57))
 local radius = lerp(1.9, 8.4, light_random)
 local height = lerp(0.22, 4.3, chance(23) ^ 1.6) + 0.18 * sin(2 * around)
+local size   = chance(13) ^ 6 -- most are sparks, a few are lanterns
 local tone   = palette { -- embers, a few of them lost souls
   {0.00, {1.00, 0.36, 0.07}}, {0.40, {1.00, 0.56, 0.18}}, {0.66, {1.00, 0.24, 0.08}},
   {0.72, {0.08, 0.50, 1.00}}, {0.90, {0.10, 0.85, 0.80}}, {1.00, {0.55, 0.35, 1.00}},
@@ -41,8 +42,8 @@ local lamps = point_lights {
   count = lights:get(),
   position = vec(radius * sin(around + math.pi / 2), radius * sin(around), height),
   color = tone(chance(91)).rgb,
-  power = power * lerp(0.5, 1.5, chance(13)),
-  range = reach, radius = 0.016,
+  power = power * lerp(0.03, 6, size),
+  range = reach, radius = lerp(0.008, 0.05, size),
 }
 
 local bronze = material { color = {0.17, 0.22, 0.17}, specular = 0.9, roughness = 0.34 } -- old, and green
