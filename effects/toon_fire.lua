@@ -101,9 +101,9 @@ local scene = geometry {
 
 -- ---- as it is -----------------------------------------------------------------------------------
 
-local heat   = palette { {0.05, {0, 0, 0}}, {0.2, {0.20, 0.035, 0.004}}, {0.45, {1, 0.30, 0.04}}, {0.75, {1.7, 0.80, 0.18}}, {1, {2, 1.4, 0.6}} }
+local heat   = palette { {0.05, {0, 0, 0}}, {0.2, {0.20, 0.035, 0.004}}, {0.45, {1, 0.22, 0.02}}, {0.75, {1.7, 0.62, 0.09}}, {1, {2, 1.2, 0.35}} }
 local solid  = shade { name = "plain", from = scene }
-local fire   = march { name = "fire", density = flames * 0.8, radiance = heat(flames * 1.1).rgb * 2.4, from = scene, steps = 48, jitter = 0.5 }
+local fire   = march { name = "fire", density = flames * 0.8, albedo = {0, 0, 0}, radiance = heat(flames * 1.3).rgb * 6, from = scene, steps = 48, jitter = 0.5 }
 local grey   = march { name = "grey", density = cloud * smoke * 1.4, radiance = {0.03, 0.035, 0.05}, from = scene, steps = 40, jitter = 0.5, resolution = 0.5 }
 local plain  = over { fire, over { grey, solid, from = {grey, scene} }, from = {fire, scene} }
 
