@@ -297,20 +297,15 @@ class Sheets(Case):
         self.assertAlmostEqual(y, told["pivot"][1] * 64, delta=1.5)
         self.assertGreater(area, 1000)
 
-    def test_motion_and_velocity_are_by_seconds_of_the_effect(self):
+    def test_motion_is_by_seconds_of_the_effect(self):
         """Air in time lapse, at the same of its own times."""
-        told = {}
+        most = {}
         for scale, frame in (1, "9"), (4, "3"):
             self.export(LAPSE % scale, "--frames", frame, "--grid", "1x1", "--cell", "32", "--maps", "motion", "--camera",
                         output="air.exr")
-            self.succeeds("export", "vdb", "effect.lua", "-o", "air.vdb", "--frames", frame, "--fields", "velocity", "--box",
-                          "-0.8,-0.8,0,0.8,0.8,1.6")
-            self.succeeds("export", "raw", "air.vdb", "-o", "air.raw", "--grid", "velocity", "--type", "f32")
-            raw = self.read("air.raw")
-            told[scale] = (self.floats("air-motion.exr")["G"], struct.unpack(f"<{len(raw) // 4}f", raw))
-        for once, four in zip(told[1], told[4]):
-            self.assertGreater(max(once), 0.01)
-            self.assertAlmostEqual(max(four), 4 * max(once), delta=0.02 * max(four))
+            most[scale] = max(self.floats("air-motion.exr")["G"])
+        self.assertGreater(most[1], 0.01)
+        self.assertAlmostEqual(most[4], 4 * most[1], delta=0.02 * most[4])
 
     def test_cells_are_the_means_of_a_shutter(self):
         open_ = ["--frames", "1", "--samples", "6", "--shutter"]
