@@ -4,16 +4,17 @@ from lib.program import SMALL, Case, main
 EFFECT = """
 local fx = effect { name = "numbers", fps = 10, frames = 4 }
 local p = param { "p", 1, min = 0, max = 100 }
-local lit = lighting { density = sphere { }, albedo = {0.9, 0.9, 0.9},
+local far = march { name = "far", density = sphere { }, steps = 4, shadow_steps = 0,
   %s }
-local volume = march { from = lit,
+local volume = march { from = far,
   %s }
-fx.output = volume.color
+fx.output = over { far, volume }.color
 return fx
 """
 AIR = """
 local fx = effect { name = "air", fps = 12, frames = 12 }
-local air = lbm { size = {16, 16, 16}, voxel_size = 0.1, viscosity = function(t) return -0.5 * t end }
+local air = lbm { size = {16, 16, 16}, voxel_size = 0.1, boundary = "periodic",
+  viscosity = function(t) return -0.5 * t end }
 air:source { shape = sphere { position = {0, 0, 0.8}, radius = 0.3 }, density = 1,
   rate = curve { {0, 1}, {0.1, -1} } }
 fx.output = march { density = air.density, steps = 8 }.color
@@ -40,7 +41,7 @@ class Numbers(Case):
     def test_what_others_take_over_is_told_of_where_it_is_said(self):
         said = self.warnings(EFFECT % ("ambient = curve { {0.05, 5}, {0.15, 20} }", "steps = 4"))
         self.assertEqual(len(said), 1, said)
-        self.assertIn("effect.lua:4: lighting: uniform 'ambient' is 12.5 at 0.1 s; accepted: 0 to 10; it counts as 10",
+        self.assertIn("effect.lua:4: far: uniform 'ambient' is 12.5 at 0.1 s; accepted: 0 to 10; it counts as 10",
                       said[0])
 
     def test_each_number_is_told_of(self):
@@ -53,7 +54,7 @@ class Numbers(Case):
         said = self.warnings(AIR, frames="3")
         self.assertEqual(len(said), 2, said)
         self.assertRegex(said[0] + said[1], "effect.lua:3: lbm: uniform 'viscosity' is -.* accepted: 0 m\\^2/s or more")
-        self.assertRegex(said[0] + said[1], "effect.lua:4: lbm_source: uniform 'rate' is -")
+        self.assertRegex(said[0] + said[1], "effect.lua:5: lbm_source: uniform 'rate' is -")
 
 
 main()
