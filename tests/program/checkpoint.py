@@ -6,7 +6,7 @@ from lib.program import SMALL, Case, main
 AIR = """
 local fx = effect { name = "air", fps = 60, frames = 5 }
 fx.camera = orbit { target = {0, 0, 0.8}, distance = 4 }
-local air = lbm { size = {16, 16, 16}, voxel_size = %s, speed = 2, buoyancy_heat = 6,
+local air = lbm { size = {16, 16, 16}, voxel_size = %s, speed = 2, buoyancy_heat = 6, boundary = "periodic",
   collision = "bgk", viscosity = 0.01, smagorinsky = 0 }
 air:source { shape = sphere { position = {0, 0, 0.4}, radius = 0.3 }, density = 1, temperature = 2 }
 fx.output = final { march { density = air.density * 30, steps = 8 } }.color
