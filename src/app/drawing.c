@@ -199,9 +199,9 @@ bool drawing_finish(live *l) {
     d->pictured = now;
     performance_add(l->performance, l->effect, d->called - d->began, d->began - d->before);
     d->before = d->began;
-    log_write(LOG_DEBUG, "live: drew frame %g", d->frame);
-    bool changed = l->dirty;
-    l->dirty = gathers(l) || waits(l);
+    bool changed = l->dirty, early = waits(l);
+    log_write(LOG_DEBUG, "live: drew frame %g%s", d->frame, early ? ", early" : "");
+    l->dirty = gathers(l) || early;
     take(l);
     l->dirty = l->dirty || changed;
     return true;
