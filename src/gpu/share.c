@@ -1,8 +1,8 @@
 // Pipelines of equal descriptions share what the driver made of them: a table of reference counts
 // by the hash of the description.
 //
-// The last that nobody uses any more are kept, as many as two or three effects have: an effect that
-// is edited to and fro wants them again, and a driver takes tens of milliseconds to build one.
+// The last few that nobody uses any more are kept: an effect that is edited to and fro wants them
+// again, and a driver takes tens of milliseconds to build one.
 //
 // Nothing is built under the lock, so that threads build side by side. Two that ask for the same at
 // the same moment both build it, and the later one takes what the earlier one has added.

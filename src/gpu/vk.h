@@ -20,7 +20,7 @@ enum {
     VK_MAX_DEVICES = 16,
     VK_BATCHES = 4,
     VK_BUILT_ROWS = 64,
-    VK_BUILT_IDLE = 64,
+    VK_BUILT_IDLE = 16,
     VK_MAX_SHOWN = 16
 };
 
