@@ -92,7 +92,7 @@ class Bench(Case):
         self.fail("no row came")
 
     def test_an_interrupted_sweep_goes_on(self):
-        self.write("sweep.lua", SWEEP % "repeats = 100")
+        self.write("sweep.lua", SWEEP % "repeats = 25")
         running = self.start()
         self.wait_for_rows(1)
         running.send_signal(signal.SIGINT)
@@ -101,7 +101,7 @@ class Bench(Case):
         self.assertIn("--resume goes on", said)
         before = self.rows()
         self.assertTrue(0 < len(before) < 4)
-        self.write("sweep.lua", (SWEEP % "repeats = 100") + "-- the same, said otherwise\n")
+        self.write("sweep.lua", (SWEEP % "repeats = 25") + "-- the same, said otherwise\n")
         self.assertIn(f"{4 - len(before)} of 4 rows", self.bench("--resume"))
         self.assertEqual(self.rows()[:len(before)], before)
         self.assertEqual([row["index"] for row in self.rows()], [0, 1, 2, 3])
