@@ -304,7 +304,8 @@ class Stopped(Case):
         self.write("fx/effect.lua", PUFF + "-- one\n")
         self.write("fx/ground.obj", GROUND)
         os.mkdir(self.path("tmp"))
-        temporary = {"TMPDIR": self.path("tmp")}
+        # The validation layers keep a file beside the user's other caches, or in TMPDIR where there are none.
+        temporary = {"TMPDIR": self.path("tmp"), "XDG_CACHE_HOME": self.folder}
         sweep = ('return sweep { name = "try", effect = "fx/effect.lua", size = {32, 18}, frames = "3", measure = "reload",\n'
                  'repeats = %d, warmup = 0, axes = { axis { "edit", { name = "a", edit = {"-- one", "-- two", "-- three"} } } } }')
         self.write("sweep.lua", sweep % 1)
