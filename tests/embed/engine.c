@@ -152,7 +152,10 @@ static bool draw_frame(int frame) {
     draw_scene(&view, ++now);
     for (int i = 0; i < EFFECTS && !roil_is_lost(r); i++, now++)
         if (!draw_effect(i, frame, &view, now, now + 1)) done = false;
-    if (roil_is_lost(r)) stop(); // what it was to signal never comes
+    if (roil_is_lost(r)) { // what it was to signal never comes
+        if (done) tell();  // found after the effects were drawn
+        stop();
+    }
     compose_layers(now, now + 1);
     now++;
     return done;

@@ -14,7 +14,8 @@
 enum { WIDTH = 96, HEIGHT = 54, FRAMES = 60, EFFECTS = 2 };
 static const VkFormat hdr = VK_FORMAT_R16G16B16A16_SFLOAT, deep = VK_FORMAT_D32_SFLOAT;
 
-#define FAIL(...) (fprintf(stderr, "engine: " __VA_ARGS__), fputc('\n', stderr), exit(1))
+// Ends at once: the device may be at work, and drivers do not bear exit() then.
+#define FAIL(...) (fprintf(stderr, "engine: " __VA_ARGS__), fputc('\n', stderr), _Exit(1))
 #define VK(call)                                                                                   \
     do {                                                                                           \
         VkResult result = (call);                                                                  \
