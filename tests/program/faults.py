@@ -147,7 +147,8 @@ class Stage:
             for folder, _, names in os.walk(top):
                 for name in names:
                     path = os.path.relpath(os.path.join(folder, name), self.folder)
-                    if path not in self.inputs and path != "old.state":
+                    # The validation layers keep a file of their own in TMPDIR where the user has no folder of caches.
+                    if path not in self.inputs and path != "old.state" and not name.startswith("shader_validation_cache"):
                         with open(os.path.join(folder, name), "rb") as f:
                             found[path] = f.read()
         return found
