@@ -376,14 +376,15 @@ static void what_is_not_in_the_air_is_told(void **state) {
 // A source within a collider; the second one comes out of it.
 static void what_solids_keep_from_giving_is_told(void **state) {
     static const char within[] =
-        "air:source { shape = sphere { position = %s, radius = 0.1 }, density = 1 }\n"
+        "local pace = param { 'pace', %d, min = 0, max = 2 }\n"
+        "air:source { shape = sphere { position = vec(0.3 - pace * time, 0, 1.2), radius = 0.1 },\n"
+        "             density = 1 }\n"
         "air:collider { mesh { 'cube.obj', scale = 0.3, position = {0.3, 0, 1.2} } }";
-    static const char *const places[] = {"{0.3, 0, 1.2}", "vec(0.3 - 2 * time, 0, 1.2)"};
     for (int i = 0; i < 2; i++) {
         picture p;
-        char more[256], path[512];
+        char more[512], path[512];
         write_text("cube.obj", CUBE, path);
-        snprintf(more, sizeof more, within, places[i]);
+        snprintf(more, sizeof more, within, 2 * i);
         roil_effect *e = open(*state, 24, "buoyancy_density = 3", more);
         draw(e, 1, p);
         draw(e, 2, p);

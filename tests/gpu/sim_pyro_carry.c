@@ -17,7 +17,7 @@ static void fill_patch(pyro_world *w, const int c[3], void *data) {
 static void check_patch(gpu *g, bool half) {
     pyro_world w;
     pyro_open(&w, g,
-              &(pyro_desc){.size = {48, 48, 48},
+              &(pyro_desc){.size = {32, 32, 32},
                            .faces = {[4] = PYRO_WALL},
                            .advection = PYRO_PARABOLIC,
                            .half_velocity = half});
@@ -25,7 +25,7 @@ static void check_patch(gpu *g, bool half) {
     pyro_for_each(&w, fill_patch, NULL);
     pyro_transfer(&w, true);
     const double before = pyro_sum_up(&w).heat;
-    pyro_run_steps(&w, 60);
+    pyro_run_steps(&w, 40);
     const pyro_sums after = pyro_sum_up(&w);
     print_message("a warm patch on the floor keeps %.4f of its heat; hottest %.0f K\n",
                   after.heat / before, after.hottest);

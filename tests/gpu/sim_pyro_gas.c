@@ -121,11 +121,11 @@ static void check_room(gpu *g, pyro_advection advection, bool half) {
     pyro_open(
         &w, g,
         &(pyro_desc){
-            .size = {48, 48, 48}, .advection = advection, .cycles = 6, .half_velocity = half});
+            .size = {32, 32, 32}, .advection = advection, .cycles = 6, .half_velocity = half});
     w.numbers.gravity = 0;
     w.numbers.dt = 1e-4f; // so short that nothing moves
     w.numbers.burn_time = 0.1f;
-    ball b = {12, 600, 0.02f, false};
+    ball b = {8, 600, 0.02f, false};
     pyro_for_each(&w, fill_ball, &b);
     pyro_transfer(&w, true);
     pyro_run_steps(&w, 1);
@@ -152,14 +152,14 @@ static void heat_makes_room_for_half_the_velocity(void **state) {
 static void check_balance(gpu *g, bool half, bool lumpy, pyro_precision precision) {
     pyro_world w;
     pyro_open(&w, g,
-              &(pyro_desc){.size = {48, 48, 48},
+              &(pyro_desc){.size = {32, 32, 32},
                            .advection = PYRO_PARABOLIC,
                            .precision = precision,
                            .half_velocity = half});
     w.numbers.gravity = 0;
     w.numbers.burn_time = 0.05f;
     w.numbers.dt = 0.004f;
-    ball b = {9, 400, 0.03f, lumpy};
+    ball b = {6, 400, 0.03f, lumpy};
     pyro_for_each(&w, fill_ball, &b);
     pyro_transfer(&w, true);
     const pyro_sums before = pyro_sum_up(&w);
@@ -190,7 +190,7 @@ static float *run_ball(gpu *g, bool everywhere, size_t *bytes) {
     pyro_world w;
     pyro_open(
         &w, g,
-        &(pyro_desc){.size = {48, 48, 64}, .advection = PYRO_PARABOLIC, .half_velocity = true});
+        &(pyro_desc){.size = {32, 32, 32}, .advection = PYRO_PARABOLIC, .half_velocity = true});
     w.numbers.gravity = 9.81f;
     w.numbers.burn_time = 0.05f;
     ball b = {5, 700, 0.05f, false};

@@ -39,7 +39,7 @@ SIZE = ["--size", "48x27"]
 AIR = """
 local fx = effect { name = "air", fps = 60, frames = 2 }
 fx.camera = orbit { target = {0, 0, 0.8}, distance = 4 }
-local air = lbm { size = {16, 16, 16}, voxel_size = 0.1, speed = 2, buoyancy_heat = 6, collision = "bgk" }
+local air = lbm { size = {16, 16, 16}, voxel_size = 0.1, speed = 2, buoyancy_heat = 6 }
 air:source { shape = sphere { position = {0, 0, 0.4}, radius = 0.3 }, density = 1, temperature = 2 }
 fx.output = final { march { density = air.density * 30, steps = 8 } }.color
 return fx

@@ -18,7 +18,7 @@ FLOAT = os.path.join(CORPUS, "fuzz_vdb/float.vdb")
 # A day of it: some 17 million steps.
 WARM = """
 local fx = effect { name = "air" }
-local air = lbm { size = {16, 16, 16}, voxel_size = 0.1, speed = 2, collision = "bgk", viscosity = 0.01, warm_up = 86400,
+local air = lbm { size = {16, 16, 16}, voxel_size = 0.1, speed = 2, warm_up = 86400,
   boundary = "periodic" }
 air:source { shape = sphere { radius = 0.3 }, density = 1 }
 fx.output = final { march { density = air.density, steps = 4 } }.color

@@ -10,7 +10,7 @@ AIR = """
 local fx = effect { name = "air", fps = 30, frames = 12 }
 fx.camera = orbit { target = {0, 0, 0.8}, distance = 4 }
 local heat = param { "heat", 2 }
-local air = lbm { size = {16, 16, 16}, voxel_size = 0.1, speed = 2, buoyancy_heat = 6, collision = "bgk", viscosity = 0.01 }
+local air = lbm { size = {16, 16, 16}, voxel_size = 0.1, speed = 2, buoyancy_heat = 6 }
 air:source { shape = sphere { position = {0, 0, 0.4}, radius = 0.3 }, density = 1, temperature = heat }
 local sparks = particles { count = 64, rate = 100, velocity = air.velocity, position = {0, 0, 0.5} }
 local picture = march { density = air.density * 30, steps = 8 }

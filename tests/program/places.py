@@ -175,7 +175,7 @@ WAS_READ = {
 
 AIR = """
 local fx = effect { name = "air" }
-local air = lbm { size = {16, 16, 16}, voxel_size = 0.1, speed = 2, collision = "bgk", viscosity = 0.01 }
+local air = lbm { size = {16, 16, 16}, voxel_size = 0.1, speed = 2 }
 air:source { shape = sphere { radius = 0.3 }, density = 1 }
 fx.output = final { march { density = air.density, steps = 4 } }.color
 return fx

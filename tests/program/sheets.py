@@ -40,12 +40,14 @@ return fx
 """
 LIT = """
 local fx = effect { name = "lit", fps = 10, frames = 4 }
+local glow = param { "glow", 0, min = 0, max = 1 }
 fx.camera = orbit { target = {0, 0, 1}, distance = 6, yaw = 30, pitch = 20 }
 fx.sun = sun { azimuth = 60, elevation = 20, strength = 3.14159265 }
 fx.sky = sky { strength = 0 }
 local lumps = worley { frequency = 1.3, octaves = 2, seed = 3 }
 local ball = sphere { position = {0.3, 0, 1}, radius = 1.2, falloff = 0.6 } * smoothstep(0.1, 0.4, lumps)
-local lit = lighting { density = ball * 6, albedo = {0.9, 0.9, 0.9}, anisotropy = 0.3, %s }
+local lit = lighting { density = ball * 6, albedo = {0.9, 0.9, 0.9}, anisotropy = 0.3, shadow_resolution = 32, glow_resolution = 16,
+                       emission = vec(0.4, 0.2, 0.1) * glow }
 fx.output = final { march { from = lit, steps = 48 }, tonemap = "none" }.color
 return fx
 """
@@ -327,21 +329,21 @@ class Sheets(Case):
             self.assertLess(max(abs(v - metres / told["size_m"][0]) for v in motion[c]), 1e-3)
 
     def test_six_lights_are_those_of_six_pictures(self):
-        told = self.export(LIT % "", "--frames", "1", "--grid", "1x1", "--cell", "48", "--maps", "six-way", output="six.exr")
+        told = self.export(LIT, "--frames", "1", "--grid", "1x1", "--cell", "48", "--maps", "color,six-way", output="six.exr")
         rigs = self.floats("six-right-top-back.exr"), self.floats("six-left-bottom-front.exr")
         sides = [(0, "R", "right", 1), (0, "G", "up", 1), (0, "B", "towards_camera", -1),
                  (1, "R", "right", -1), (1, "G", "up", -1), (1, "B", "towards_camera", 1)]
         for rig, channel, axis, sign in sides:
             light = [sign * (axis == name) for name in ("right", "up", "towards_camera")]
-            self.export(LIT % "", "--frames", "1", "--grid", "1x1", "--cell", "48", "--light", "scene",
+            self.export(LIT, "--frames", "1", "--grid", "1x1", "--cell", "48", "--light", "scene",
                         *self.turned(told, light), output="one.exr")
             wanted, seen = self.floats("one.exr")["R"], rigs[rig][channel]
             self.assertGreater(max(wanted), 0.1)
             self.assertLess(max(abs(a - b) for a, b in zip(wanted, seen)), 2e-3, (axis, sign))
 
     def test_emission_is_beside_the_six_lights(self):
-        self.export(LIT % "emission = {0.4, 0.2, 0.1}", "--frames", "1", "--grid", "1x1", "--cell", "32", "--maps",
-                    "color,six-way", "--light", "scene", "--set", "sun.strength=0", output="six.exr")
+        self.export(LIT, "--frames", "1", "--grid", "1x1", "--cell", "48", "--maps", "color,six-way", "--set", "glow=1",
+                    "--set", "sun.strength=0", output="six.exr")
         dark, glow = self.floats("six-right-top-back.exr"), self.floats("six-emission.exr")
         front = self.floats("six-left-bottom-front.exr")
         at = max(range(len(glow["R"])), key=lambda i: glow["R"][i])
@@ -425,8 +427,7 @@ return fx
     @unittest.skipUnless(browser.find(), "no Chromium (apt-get install chromium): the page is not tested")
     def test_the_page_draws_what_the_effect_would(self):
         small = ["--grid", "2x1", "--cell", "48"]
-        told = self.export(LIT % "emission = {0.04, 0.02, 0.01}", "--frames", "1,2", *small, "--maps", "color,six-way",
-                           "--page", "lit.html")
+        told = self.export(LIT, "--frames", "1,2", *small, "--maps", "color,six-way", "--set", "glow=0.1", "--page", "lit.html")
         self.export(CARRIED, "--frames", "4,8", *small, "--maps", "color,motion", "--page", "carried.html", output="moved.png")
         self.export(CARRIED, "--frames", "4,6,8", "--grid", "3x1", "--cell", "48", output="truth.png")
         page = browser.Browser()
@@ -434,7 +435,7 @@ return fx
         self.load(page, "lit.html")
         for light, least in (((1, 0, 0), 45), ((0, 0, -1), 45), ((0.6, 0.64, 0.48), 30)):
             seen = self.drawn(page, time=0, view="light", light=light, background=[0, 0, 0])
-            self.export(LIT % "emission = {0.04, 0.02, 0.01}", "--frames", "1", "--grid", "1x1", "--cell", "48", "--light", "scene",
+            self.export(LIT, "--frames", "1", "--grid", "1x1", "--cell", "48", "--light", "scene", "--set", "glow=0.1",
                         *self.turned(told, light), output="one.exr")
             for c, channel in enumerate("RGB"):
                 wanted = [srgb(v) for v in self.floats("one.exr")[channel]]

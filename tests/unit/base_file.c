@@ -378,7 +378,7 @@ static void a_folder_that_becomes_a_link_leads_nowhere(void **state) {
     link_to(*state, in(*state, "out").text, "link");
     assert_int_equal(pthread_create(&thread, NULL, swap, &s), 0);
     size_t read = 0;
-    for (int i = 0; i < 20000; i++) {
+    for (int i = 0; i < 4000; i++) {
         void *data;
         size_t size;
         if (i % 8 == 0) file_write_inside(root.text, target.text, "inside", 6);

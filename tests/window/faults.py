@@ -98,7 +98,7 @@ class Faults(Case):
     def test_a_long_warm_up_does_not_keep_a_window_busy(self):
         live = self.live(effect="""
 local fx = effect { name = "air" }
-local air = lbm { size = {16, 16, 16}, voxel_size = 0.1, speed = 2, collision = "bgk", viscosity = 0.01, warm_up = 86400 }
+local air = lbm { size = {16, 16, 16}, voxel_size = 0.1, speed = 2, warm_up = 86400 }
 air:source { shape = sphere { radius = 0.3 }, density = 1 }
 fx.output = final { march { density = air.density, steps = 4 } }.color
 return fx
