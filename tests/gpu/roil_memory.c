@@ -20,11 +20,11 @@ static const char head[] = "local fx = effect { name = 'asks', fps = 60, frames 
 
 // A lattice with all that its state has: faces that air passes, bodies, a force that varies.
 static const char air[] =
-    "local air = lbm { size = {64, 64, 64}, voxel_size = 0.03, speed = 2, boundary = 'open',\n"
+    "local air = lbm { size = {64, 64, 64}, voxel_size = 0.1, speed = 2, boundary = 'open',\n"
     "                  force = position * 0.1 }\n"
-    "air:source { mesh { 'crate.obj', scale = 0.4 }, density = 1 }\n"
+    "air:source { mesh { 'crate.obj', scale = 1.3 }, density = 1 }\n"
     "air:source { particles = particles { count = 64, rate = 60, lifetime = 1 }, density = 1 }\n"
-    "air:collider { mesh { 'crate.obj', scale = 0.4 } }\n"
+    "air:collider { mesh { 'crate.obj', scale = 1.3 } }\n"
     "fx.output = final { march { density = air.density * 30, steps = 4 } }.color\n"
     "return fx\n";
 
