@@ -6,7 +6,8 @@
 #include "roil_test.h"
 
 // What is asked for may miss what is taken by this: single texels, what depends on where things
-// stand, and how drivers round.
+// stand, and how drivers round (a GPU's by up to 64 KiB for each of some twenty images: twice
+// this).
 enum { WIDTH = 640, HEIGHT = 360, SLACK = 1 << 20, LAST = 3 };
 // Of a shipped effect that plays files, frames besides that are read and copied ahead of their
 // time.
@@ -132,7 +133,8 @@ static void expect_taken(roil *r, roil_effect *e, extent size, uint64_t ahead, b
     ok(roil_prepare(e, size.width, size.height));
     for (int i = 1; i <= LAST; i++) ok(roil_render(e, i));
     const uint64_t taken = used(r) - before;
-    if (taken <= asked + ahead + SLACK && asked <= taken + SLACK) return;
+    const uint64_t slack = gpu_get_info(r->device)->kind == GPU_CPU ? SLACK : 2 * SLACK;
+    if (taken <= asked + ahead + slack && asked <= taken + slack) return;
     show(list);
     fail_msg("%llu bytes were asked for, %llu are taken", (unsigned long long)asked,
              (unsigned long long)taken);
