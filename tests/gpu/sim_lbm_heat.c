@@ -130,7 +130,7 @@ static double rolls(sim_world *w) {
 // By how much rolls grow in the time that warmth takes from wall to wall.
 static double growth(gpu *g, double rayleigh) {
     sim_world w;
-    enum { SETTLE = 3000, STEPS = 2000 };
+    enum { SETTLE = 2000, STEPS = 1000 };
     const double viscosity = 0.5 / 3, diffusion = 0.5 / 4;
     sim_open(&w, g,
              &(lbm_desc){.size = {ROLL, 4, LAYER + 1},
