@@ -4,7 +4,6 @@
 #include "app/label.h"
 #include "base/log.h"
 #include "base/memory.h"
-#include "base/str.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

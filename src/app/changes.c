@@ -7,7 +7,6 @@
 #include "base/clock.h"
 #include "base/file.h"
 #include "base/log.h"
-#include "base/str.h"
 #include <stdio.h>
 #include <string.h>
 

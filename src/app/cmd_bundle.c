@@ -1,7 +1,6 @@
 // roil bundle EFFECT.lua: one file with the effect and all that it reads.
 #include "app/app.h"
 #include "app/device_options.h"
-#include "base/error.h"
 #include "base/file.h"
 #include "base/str.h"
 #include <popt.h>

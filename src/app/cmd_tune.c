@@ -2,11 +2,9 @@
 // preset.
 #include "app/app.h"
 #include "app/device_options.h"
-#include "base/clock.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "base/memory.h"
-#include "base/str.h"
 #include "bench/tune.h"
 #include <math.h>
 #include <popt.h>

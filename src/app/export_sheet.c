@@ -5,7 +5,6 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/memory.h"
-#include "base/str.h"
 #include <math.h>
 #include <popt.h>
 #include <stdio.h>

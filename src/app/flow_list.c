@@ -1,11 +1,9 @@
 // The templates of the effect's folder and of the library, as icons to choose from.
 #include "app/flow_tools.h"
-#include "app/label.h"
 #include "base/clock.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/str.h"
-#include <math.h>
 #include <string.h>
 
 enum { ICON = 64, AT_ONCE = 8 };       // pixels; made in one frame

@@ -3,7 +3,6 @@
 // can be undone and written into the file.
 #include "app/handles.h"
 #include "app/label.h"
-#include "base/log.h"
 #include "base/maths.h"
 #include "base/memory.h"
 #include "base/str.h"

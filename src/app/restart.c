@@ -2,9 +2,7 @@
 #include "app/arguments.h"
 #include "base/log.h"
 #include "base/memory.h"
-#include "base/str.h"
 #include <signal.h>
-#include <stdio.h>
 #include <string.h>
 #include <unistd.h>
 

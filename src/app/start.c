@@ -4,8 +4,6 @@
 #include "app/recent.h"
 #include "app/starts.h"
 #include "app/window.h"
-#include "base/clock.h"
-#include "base/error.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/str.h"

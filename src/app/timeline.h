@@ -1,7 +1,6 @@
 // The time of the live window: which frame is shown, and how it advances. Needs no window.
 #pragma once
 #include <stdbool.h>
-#include <stdint.h>
 
 typedef struct timeline {
     double fps;

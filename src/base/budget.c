@@ -1,7 +1,6 @@
 #include "base/budget.h"
 #include "base/memory.h"
 #include "base/str.h"
-#include <inttypes.h>
 #include <math.h>
 #include <pthread.h>
 #include <stdio.h>

@@ -2,7 +2,6 @@
 #include "base/memory.h"
 #include "base/statistics.h"
 #include "bench/sweep.h"
-#include <math.h>
 #include <string.h>
 
 enum { FEWEST = 8 }; // frames that the signed-rank test can tell 1 of 100 by

@@ -1,10 +1,8 @@
 // Describes where and when something was measured.
 #include "base/file.h"
 #include "base/memory.h"
-#include "base/str.h"
 #include "base/worker.h"
 #include "bench/sweep.h"
-#include <ctype.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/utsname.h>

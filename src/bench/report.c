@@ -1,7 +1,6 @@
 // Makes a page from results: the tree of results.json with pictures instead of their names is
 // passed to scripts/report.
 #include "bench/report.h"
-#include "base/error.h"
 #include "base/file.h"
 #include "base/memory.h"
 #include "bench/json.h"

@@ -1,6 +1,5 @@
 // Controls that are fields in a slot: uniforms of passes, values of the scene, lights, materials;
 // and numbers that fields in space were given.
-#include "base/error.h"
 #include "base/memory.h"
 #include "effect/effect_impl.h"
 #include <string.h>

@@ -1,5 +1,4 @@
 // Controls of passes: uniforms ("march.steps"), options ("march.mode"), "march.resolution".
-#include "base/error.h"
 #include "effect/effect_impl.h"
 #include <string.h>
 

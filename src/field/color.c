@@ -3,7 +3,6 @@
 // the piecewise Gaussian fits of Wyman, Sloan and Shirley ("Simple analytic approximations to the
 // CIE XYZ color matching functions", JCGT 2013).
 #include "field/color.h"
-#include "base/maths.h"
 #include "field/palette.h"
 #include <math.h>
 #include <pthread.h>

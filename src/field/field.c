@@ -4,7 +4,6 @@
 #include "base/error.h"
 #include "field/kinds.h"
 #include <assert.h>
-#include <math.h>
 #include <string.h>
 
 const field_kind *field_kind_find(const char *name) {

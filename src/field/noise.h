@@ -3,7 +3,6 @@
 #include "base/maths.h"
 #include "field/range.h"
 #include <stdbool.h>
-#include <stdint.h>
 
 enum { NOISE_MAX_OCTAVES = 12 };
 

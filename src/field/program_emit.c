@@ -18,7 +18,6 @@
 #include "base/error.h"
 #include "base/memory.h"
 #include "field/program_parts.h"
-#include <assert.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>

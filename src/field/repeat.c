@@ -3,7 +3,6 @@
 // Numbers are compared at a few times with themselves later. A noise repeats where its phase and
 // its drift have gone on by whole periods of its lattice, and a tile where the place that it is
 // sampled at has gone on by whole sides of it. What is simulated or recorded is not known to.
-#include "base/memory.h"
 #include "field/kinds.h"
 #include "field/palette.h"
 #include <math.h>

@@ -10,7 +10,6 @@
 #include "base/memory.h"
 #include "base/str.h"
 #include "field/sequence_parts.h"
-#include <assert.h>
 #include <math.h>
 #include <string.h>
 

@@ -3,7 +3,6 @@
 // Numbers in the names of files are frames: they are what differs, so all that is before and behind
 // them must be the same. The least one is the first of the timeline. A frame without a file shows
 // the one before it, or, where frames are mixed, both its neighbours by how near they are.
-#include "base/error.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/str.h"

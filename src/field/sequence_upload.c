@@ -1,7 +1,6 @@
 // From texels of a frame to its textures: how large they are, where their bytes lie in the memory
 // that is copied from.
 #include "base/error.h"
-#include "base/memory.h"
 #include "field/sequence_parts.h"
 #include <string.h>
 

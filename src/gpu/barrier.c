@@ -5,7 +5,6 @@
 #include "base/memory.h"
 #include "gpu/vk.h"
 #include <assert.h>
-#include <string.h>
 
 const hazard_access vk_image_from = {.stages = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
                                      .reads = VK_ACCESS_2_TRANSFER_READ_BIT,

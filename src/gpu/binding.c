@@ -4,7 +4,6 @@
 // which takes a driver half the work of a list of writes.
 #include "base/memory.h"
 #include "gpu/vk.h"
-#include <inttypes.h>
 
 enum { SETS_OF_POOL = 64 };
 

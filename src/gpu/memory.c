@@ -7,7 +7,6 @@
 // A block is taken from the budget whole, as spare; an object in it takes its bytes from the spare
 // ones under its own label. So the sum is what the driver gave, whatever lies in it.
 #include "base/memory.h"
-#include "base/str.h"
 #include "gpu/vk.h"
 #include <inttypes.h>
 

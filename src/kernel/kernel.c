@@ -1,6 +1,5 @@
 #include "kernel/kernel.h"
 #include "base/error.h"
-#include "base/memory.h"
 #include <assert.h>
 #include <string.h>
 

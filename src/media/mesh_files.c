@@ -3,7 +3,6 @@
 // links.
 #include "media/mesh_files.h"
 #include "base/error.h"
-#include "base/memory.h"
 #include "base/str.h"
 #include <errno.h>
 #include <limits.h>

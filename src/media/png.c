@@ -6,7 +6,6 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/log.h"
-#include "base/memory.h"
 #include "base/str.h"
 #include <assert.h>
 #include <setjmp.h>

@@ -1,6 +1,5 @@
 // PNG by the reader: the data of its jobs and of their results.
 #include "base/error.h"
-#include "base/memory.h"
 #include "media/png.h"
 #include <string.h>
 

@@ -1,8 +1,6 @@
 // Sheets: the frames of an effect beside each other in one picture, as cells of a flipbook, left to
 // right and top to bottom. Pictures of floats, four channels a pixel, rows from the top.
 #pragma once
-#include <stdbool.h>
-#include <stddef.h>
 #include <stdint.h>
 
 typedef struct sheet {

@@ -2,7 +2,6 @@
 // file has Y up its axes are rotated: our Y is its -Z, and our Z its Y.
 #pragma once
 #include <stdbool.h>
-#include <stddef.h>
 #include <stdint.h>
 
 enum { TEXELS_IMAGES = 4 };

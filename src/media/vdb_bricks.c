@@ -12,7 +12,6 @@
 #include "base/maths.h"
 #include "base/memory.h"
 #include "media/vdb_wire.h"
-#include <math.h>
 #include <string.h>
 
 enum { SIDE = VDB_BLOCK, VOXELS = SIDE * SIDE * SIDE };

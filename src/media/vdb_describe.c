@@ -3,7 +3,6 @@
 #include "media/vdb_describe.h"
 #include "base/error.h"
 #include "base/memory.h"
-#include <ctype.h>
 #include <limits.h>
 #include <math.h>
 #include <string.h>

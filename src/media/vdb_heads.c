@@ -1,6 +1,5 @@
 // The job "vdb heads": what files say of themselves, found without OpenVDB and in no process that
 // has it.
-#include "base/error.h"
 #include "base/memory.h"
 #include "media/vdb_describe.h"
 #include "media/vdb_wire.h"

@@ -2,7 +2,6 @@
 #include "base/budget.h"
 #include "base/error.h"
 #include "base/file.h"
-#include "base/memory.h"
 #include "base/str.h"
 #include "base/time_limit.h"
 #include "media/vdb_wire.h"

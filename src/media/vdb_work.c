@@ -1,5 +1,4 @@
 // OpenVDB in the reader: receives jobs, does them, and sends results.
-#include "base/error.h"
 #include "base/memory.h"
 #include "media/vdb_wire.h"
 #include <string.h>

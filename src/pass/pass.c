@@ -3,7 +3,6 @@
 #include "base/error.h"
 #include "base/memory.h"
 #include "pass/pass_impl.h"
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,6 +1,5 @@
 // A pass that stands for one of another type takes what is said to that one, and passes over what
 // it has no use for.
-#include "base/error.h"
 #include "pass/pass_impl.h"
 #include <string.h>
 

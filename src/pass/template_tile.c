@@ -1,7 +1,6 @@
 // Pictures of templates as tiles: all of one size, with values times alpha, so that they can be
 // sampled between texels and on coarser levels.
 #include "base/maths.h"
-#include "base/memory.h"
 #include "pass/templates.h"
 #include <math.h>
 

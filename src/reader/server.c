@@ -7,7 +7,6 @@
 // needs, have one too.
 #include "base/isolate_wire.h"
 #include "base/log.h"
-#include "base/memory.h"
 #include "base/stack.h"
 #include "reader/worker.h"
 #include <fcntl.h>

@@ -3,7 +3,6 @@
 // it.
 #include "base/error.h"
 #include "base/memory.h"
-#include "base/str.h"
 #include "roil/roil_impl.h"
 #include <jansson.h>
 #include <stdlib.h>

@@ -1,5 +1,4 @@
 // Prints controls as Lua, for "Copy as Lua" and for presets.
-#include "base/error.h"
 #include "base/memory.h"
 #include "base/value.h"
 #include "roil/roil_impl.h"

@@ -1,6 +1,5 @@
 // Motion where nothing says a velocity: from each cell to the next, and from it back to the one
 // before, as optical flow. What is kept is the mean of both ways, which is how it moves there.
-#include "base/error.h"
 #include "base/memory.h"
 #include "media/optical_flow.h"
 #include "roil/sheet.h"

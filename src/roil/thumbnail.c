@@ -1,6 +1,5 @@
 // Pictures made small, for people to choose from.
 #include "base/error.h"
-#include "base/maths.h"
 #include "media/png.h"
 #include "roil/roil_impl.h"
 #include <math.h>

@@ -1,7 +1,5 @@
 // Places everything that rays can hit in a frame. Things that have not changed are left alone, and
 // so are single instances.
-#include "base/error.h"
-#include "base/memory.h"
 #include "scene/bvh_impl.h"
 #include "scene/material.h"
 #include "scene/runs.h"

@@ -4,7 +4,6 @@
 #include "base/memory.h"
 #include "scene/bvh_impl.h"
 #include "scene/runs.h"
-#include <math.h>
 #include <string.h>
 
 enum {

@@ -1,6 +1,5 @@
 #include "scene/explosions.h"
 #include "base/error.h"
-#include <math.h>
 #include <string.h>
 
 bool scene_explosion_check(const scene_explosion *one) {

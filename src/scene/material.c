@@ -4,8 +4,6 @@
 #include "scene/material.h"
 #include "base/error.h"
 #include "scene/scene_impl.h"
-#include <math.h>
-#include <string.h>
 
 static const float emission_max = 1e4f; // that a half float holds several times over
 

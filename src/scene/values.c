@@ -1,6 +1,5 @@
 // The numbers that a script, a setting or a window may give to what stands around the volume.
 #include "scene/material.h"
-#include "scene/scene_impl.h"
 #include <math.h>
 #include <stddef.h>
 

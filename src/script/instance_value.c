@@ -1,5 +1,4 @@
 // Reads values of a single instance from a script.
-#include "base/memory.h"
 #include "script/instances.h"
 #include <math.h>
 #include <stdio.h>

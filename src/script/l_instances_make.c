@@ -1,7 +1,6 @@
 // instances { mesh { ... }, mesh { ... }, at = scatter { ... }, kind = {0.3, 0.7}, scale = {0.5,
 // 1.3} }: sets the initial state of instances. A value can be given once for all, as a range for
 // random numbers, as a list, or by a function(i, place).
-#include "base/memory.h"
 #include "scene/scatter.h"
 #include "script/instances.h"
 #include <math.h>

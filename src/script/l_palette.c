@@ -3,7 +3,6 @@
 // palette { keys = { {0, { {0, "#000"}, {1, "#fff"} }}, {2, { ... }} } }
 // over_age { {0, 0.01}, {1, 0.1} } is one over particle_age (prelude.lua); a number of it is edited
 // as a curve. A palette is called with a field, and gives a field of four components.
-#include "base/memory.h"
 #include "script/binding.h"
 #include <math.h>
 #include <string.h>

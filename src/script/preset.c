@@ -1,7 +1,6 @@
 // Presets: a table of settings.
 #include "script/preset.h"
 #include "base/file.h"
-#include "base/memory.h"
 #include "script/binding.h"
 #include "script/setting.h"
 

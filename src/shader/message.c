@@ -1,6 +1,5 @@
 // Turns the compiler's log into one message with the real file and line, and the source line below
 // it.
-#include "base/memory.h"
 #include "shader/unit.h"
 #include <ctype.h>
 #include <stdio.h>

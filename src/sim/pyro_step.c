@@ -1,7 +1,6 @@
 // A step of a combustion solver: what the gas carries and burns, its velocity, the projection; then
 // the images of the state.
 #include "base/error.h"
-#include "sim/fuels.h"
 #include "sim/pyro_impl.h"
 #include <math.h>
 #include <string.h>

@@ -1,5 +1,4 @@
 // The window's fonts, which fontconfig finds among those installed.
-#include "base/error.h"
 #include "base/file.h"
 #include "base/memory.h"
 #include "ui/parts.h"

@@ -1,6 +1,5 @@
 // What a step of the solver is told, from the uniforms of the pass: physical units become those of
 // the lattice.
-#include "base/memory.h"
 #include "pass/air/lbm_parts.h"
 #include <math.h>
 #include <string.h>

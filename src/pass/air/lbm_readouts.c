@@ -1,7 +1,5 @@
 // What simulated air tells of itself, and the guard: what the device noticed some frames ago.
-#include "base/log.h"
 #include "base/memory.h"
-#include "base/str.h"
 #include "pass/air/lbm_parts.h"
 #include <math.h>
 #include <string.h>

@@ -1,7 +1,6 @@
 // Bricks: where a density can be above 0 is found from the ranges of its fields, then how far from
 // that each empty block lies. As many as fit the box: numbers, so that they may change with it.
 #include "pass/march/bricks.h"
-#include "base/memory.h"
 #include "field/range.h"
 #include "pass/march/march_around.h"
 #include <math.h>

@@ -5,8 +5,6 @@
 #include "base/error.h"
 #include "base/memory.h"
 #include "pass/particles/particles_parts.h"
-#include <math.h>
-#include <string.h>
 
 static double area_of(const particles_triangle *t) {
     vec3 across;

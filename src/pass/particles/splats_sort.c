@@ -1,5 +1,4 @@
 // Pairs of a key and a splat, sorted on the device: by as many digits as tiles and depth need.
-#include "base/memory.h"
 #include "pass/particles/splats_parts.h"
 
 enum {

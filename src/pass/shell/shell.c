@@ -5,7 +5,6 @@
 #include "base/memory.h"
 #include "field/range.h"
 #include "pass/shell/shell_parts.h"
-#include <math.h>
 #include <string.h>
 
 static const char *const names[] = {SHELL_NAMES(KERNEL_NAME_TEXT)};

@@ -1,6 +1,5 @@
 // What slices tell of themselves: what the device noticed some frames ago.
 #include "base/memory.h"
-#include "base/str.h"
 #include "pass/slices/slices_parts.h"
 
 // Cells that the flow may cross in a step before it is told of: beyond it, what is carried is
