@@ -24,56 +24,49 @@ static void add_name(names *n, const char *name) {
     n->items[n->count++] = name;
 }
 
+typedef struct column { // of names that rows have
+    const char *prefix;
+    size_t at; // of a bench_times or a bench_numbers, in bench_row
+} column;
+static const column time_columns[] = {{"gpu", offsetof(bench_row, gpu)},
+                                      {"cpu", offsetof(bench_row, cpu)},
+                                      {"time", offsetof(bench_row, times)}};
+static const column number_columns[] = {{"counter", offsetof(bench_row, counters)},
+                                        {"published", offsetof(bench_row, published)}};
+
+static const bench_times *times_of(const bench_row *row, size_t at) {
+    return (const bench_times *)((const char *)row + at);
+}
+
+static const bench_numbers *numbers_of(const bench_row *row, size_t at) {
+    return (const bench_numbers *)((const char *)row + at);
+}
+
 // "all" comes after the passes, even when a later row has another pass.
-static names time_names(const bench_results *r, bench_times (*get)(const bench_row *row)) {
+static names time_names(const bench_results *r, size_t at) {
     names n = {0};
     bool all = false;
     for (size_t i = 0; i < r->row_count; i++) {
-        bench_times t = get(&r->rows[i]);
-        for (size_t k = 0; k < t.count; k++) {
-            if (strcmp(t.items[k].name, "all") == 0)
+        const bench_times *t = times_of(&r->rows[i], at);
+        for (size_t k = 0; k < t->count; k++) {
+            if (strcmp(t->items[k].name, "all") == 0)
                 all = true;
             else
-                add_name(&n, t.items[k].name);
+                add_name(&n, t->items[k].name);
         }
     }
     if (all) add_name(&n, "all");
     return n;
 }
 
-static names number_names(const bench_results *r, bench_numbers (*get)(const bench_row *row)) {
+static names number_names(const bench_results *r, size_t at) {
     names n = {0};
     for (size_t i = 0; i < r->row_count; i++) {
-        bench_numbers all = get(&r->rows[i]);
-        for (size_t k = 0; k < all.count; k++) add_name(&n, all.items[k].name);
+        const bench_numbers *all = numbers_of(&r->rows[i], at);
+        for (size_t k = 0; k < all->count; k++) add_name(&n, all->items[k].name);
     }
     return n;
 }
-
-static bench_times get_gpu(const bench_row *row) {
-    return row->gpu;
-}
-static bench_times get_cpu(const bench_row *row) {
-    return row->cpu;
-}
-static bench_times get_times(const bench_row *row) {
-    return row->times;
-}
-static bench_numbers get_counters(const bench_row *row) {
-    return row->counters;
-}
-static bench_numbers get_published(const bench_row *row) {
-    return row->published;
-}
-
-static const struct {
-    const char *prefix;
-    bench_times (*get)(const bench_row *row);
-} time_columns[] = {{"gpu", get_gpu}, {"cpu", get_cpu}, {"time", get_times}};
-static const struct {
-    const char *prefix;
-    bench_numbers (*get)(const bench_row *row);
-} number_columns[] = {{"counter", get_counters}, {"published", get_published}};
 
 typedef struct columns {
     names times[COUNT_OF(time_columns)], numbers[COUNT_OF(number_columns)];
@@ -143,8 +136,8 @@ static void add_headings(const bench_results *r, const columns *c, strbuf *out) 
 static void add_times(const columns *c, const bench_row *row, strbuf *out) {
     for (size_t t = 0; t < COUNT_OF(time_columns); t++)
         for (size_t i = 0; i < c->times[t].count; i++) {
-            bench_times all = time_columns[t].get(row);
-            const bench_figure *f = bench_get_time(&all, c->times[t].items[i]);
+            const bench_times *all = times_of(row, time_columns[t].at);
+            const bench_figure *f = bench_get_time(all, c->times[t].items[i]);
             if (!f) {
                 strbuf_add(out, ",,,,");
                 continue;
@@ -159,11 +152,11 @@ static void add_times(const columns *c, const bench_row *row, strbuf *out) {
 static void add_numbers(const columns *c, const bench_row *row, strbuf *out) {
     for (size_t n = 0; n < COUNT_OF(number_columns); n++)
         for (size_t i = 0; i < c->numbers[n].count; i++) {
-            bench_numbers all = number_columns[n].get(row);
+            const bench_numbers *all = numbers_of(row, number_columns[n].at);
             size_t k = 0;
-            while (k < all.count && strcmp(all.items[k].name, c->numbers[n].items[i]) != 0) k++;
-            if (k < all.count)
-                add_number(out, all.items[k].value);
+            while (k < all->count && strcmp(all->items[k].name, c->numbers[n].items[i]) != 0) k++;
+            if (k < all->count)
+                add_number(out, all->items[k].value);
             else
                 strbuf_add(out, ",");
         }
@@ -200,9 +193,9 @@ bool bench_write_csv(const bench_results *r, const char *folder) {
     if (!path_join(path, folder, "results.csv")) return false;
     columns c;
     for (size_t t = 0; t < COUNT_OF(time_columns); t++)
-        c.times[t] = time_names(r, time_columns[t].get);
+        c.times[t] = time_names(r, time_columns[t].at);
     for (size_t n = 0; n < COUNT_OF(number_columns); n++)
-        c.numbers[n] = number_names(r, number_columns[n].get);
+        c.numbers[n] = number_names(r, number_columns[n].at);
     strbuf out = {0};
     add_headings(r, &c, &out);
     for (size_t i = 0; i < r->row_count; i++) add_row(r, &c, &r->rows[i], &out);

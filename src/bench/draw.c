@@ -4,7 +4,6 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "bench/run_parts.h"
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <time.h>
@@ -184,7 +183,7 @@ static bool read_counters(bench_drawing *d, bench_row *row, arena *memory) {
     row->counters.count = count;
     for (size_t i = 0; i < count; i++)
         row->counters.items[i] =
-            (bench_number){arena_format(memory, "%s.%s", counters[i].pass, counters[i].name),
+            (sweep_number){arena_format(memory, "%s.%s", counters[i].pass, counters[i].name),
                            (double)counters[i].value};
     return true;
 }

@@ -125,7 +125,7 @@ static bool get_named(const reader *r, const json_t *from, const char *key, benc
     if (!get_object(r, from, key, &all, &size)) return false;
     out->items = arena_alloc(r->memory, size * sizeof *out->items);
     json_object_foreach(all, name, value) {
-        bench_number *n = &out->items[out->count];
+        sweep_number *n = &out->items[out->count];
         n->name = clean_text(r, name);
         if (!number_of(r, value, key, &n->value)) return false;
         out->count++;
@@ -277,7 +277,7 @@ static bool read_axes(reader *r, const json_t *root, bench_results *out) {
         return wrong(r, "axes", "a list of at most 16 axes");
     out->axes = arena_alloc(r->memory, count * sizeof *out->axes);
     for (; out->axis_count < count; out->axis_count++) {
-        bench_axis *a = &out->axes[out->axis_count];
+        sweep_axis *a = &out->axes[out->axis_count];
         const json_t *from = json_array_get(axes, out->axis_count);
         go_to(r, "axes[%zu]", out->axis_count);
         if (!json_is_object(from)) return wrong(r, "", "an object");

@@ -125,7 +125,7 @@ static json_t *texts_json(const char *const *texts, size_t count) {
 static json_t *axes_json(const bench_results *r) {
     json_t *all = json_array();
     for (size_t i = 0; i < r->axis_count; i++) {
-        const bench_axis *a = &r->axes[i];
+        const sweep_axis *a = &r->axes[i];
         json_array_append_new(all, json_pack("{s:o, s:o, s:o}", "name", text(a->name), "label",
                                              text(a->label), "values",
                                              texts_json(a->values, a->value_count)));

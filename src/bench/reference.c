@@ -6,20 +6,15 @@
 #include "base/memory.h"
 #include "bench/run_parts.h"
 #include <stdio.h>
-#include <string.h>
-#include <unistd.h>
-
-static hash128 add_text(hash128 h, const char *text) {
-    return hash_combine(h, hash_bytes(text, strlen(text)));
-}
 
 static hash128 reference_hash(const bench_row *row, uint32_t samples) {
     uint32_t numbers[] = {row->width, row->height, row->warmup, samples};
     hash128 h = hash_combine(hash_bytes(numbers, sizeof numbers),
                              hash_bytes(row->frames, row->frame_count * sizeof *row->frames));
-    h = add_text(h, row->effect);
+    h = hash_add_text(h, row->effect);
     for (size_t i = 0; i < row->settings.count; i++)
-        h = add_text(add_text(h, row->settings.items[i].name), row->settings.items[i].value);
+        h = hash_add_text(hash_add_text(h, row->settings.items[i].name),
+                          row->settings.items[i].value);
     return h;
 }
 

@@ -1,6 +1,7 @@
 // Results in memory: rows are copied, so that one arena holds all of them.
 #include "bench/results.h"
 #include "base/error.h"
+#include "base/file.h"
 #include "base/memory.h"
 #include <assert.h>
 #include <string.h>
@@ -28,7 +29,7 @@ static bench_settings copy_settings(bench_settings from, arena *memory) {
 static bench_numbers copy_numbers(bench_numbers from, arena *memory) {
     bench_numbers to = {arena_alloc(memory, from.count * sizeof *to.items), from.count};
     for (size_t i = 0; i < from.count; i++)
-        to.items[i] = (bench_number){arena_string(memory, from.items[i].name), from.items[i].value};
+        to.items[i] = (sweep_number){arena_string(memory, from.items[i].name), from.items[i].value};
     return to;
 }
 
@@ -75,6 +76,35 @@ void bench_add(bench_results *r, const bench_row *row) {
     size_t at = r->row_count++;
     for (; at > 0 && r->rows[at - 1].index > row->index; at--) r->rows[at] = r->rows[at - 1];
     r->rows[at] = copy;
+}
+
+void bench_add_axis(bench_results *r, const sweep_axis *axis) {
+    const char **values = arena_alloc(&r->memory, axis->value_count * sizeof *values);
+    for (size_t i = 0; i < axis->value_count; i++)
+        values[i] = arena_string(&r->memory, axis->values[i]);
+    r->axes[r->axis_count++] =
+        (sweep_axis){arena_string(&r->memory, axis->name), arena_string(&r->memory, axis->label),
+                     values, axis->value_count};
+}
+
+bool bench_take_earlier(bench_results *r, const char *folder, const char *other, bool exactly) {
+    bench_results old;
+    char path[PATH_CAP];
+    if (!path_join(path, folder, "results.json")) return false;
+    if (!file_exists(path)) return true;
+    if (!bench_read(folder, &old)) return false;
+    bool same = true;
+    if (strcmp(old.content, r->content) != 0)
+        same = err_set("%s is of %s", path, other);
+    else if (strcmp(old.device, r->device) != 0 || (exactly && strcmp(old.driver, r->driver) != 0))
+        same = err_set("%s was measured on %s (%s), this is %s (%s)", path, old.device, old.driver,
+                       r->device, r->driver);
+    else if (exactly && strcmp(old.commit, r->commit) != 0)
+        same = err_set("%s was measured at commit %s, this is %s", path, old.commit, r->commit);
+    for (size_t i = 0; same && i < old.row_count; i++) bench_add(r, &old.rows[i]);
+    if (same) r->date = arena_string(&r->memory, old.date);
+    bench_results_free(&old);
+    return same;
 }
 
 const bench_figure *bench_get_time(const bench_times *t, const char *name) {

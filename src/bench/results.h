@@ -5,6 +5,7 @@
 #pragma once
 #include "base/arena.h"
 #include "roil.h"
+#include "script/sweep.h"
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -27,13 +28,8 @@ typedef struct bench_times {
     size_t count;
 } bench_times;
 
-typedef struct bench_number {
-    const char *name;
-    double value;
-} bench_number;
-
 typedef struct bench_numbers {
-    bench_number *items;
+    sweep_number *items;
     size_t count;
 } bench_numbers;
 
@@ -83,12 +79,6 @@ typedef struct bench_row {
     bench_numbers published; // times that others report for this row, milliseconds
 } bench_row;
 
-typedef struct bench_axis {
-    const char *name, *label;
-    const char **values;
-    size_t value_count;
-} bench_axis;
-
 typedef struct bench_reference { // the reference that pictures are compared with
     bool traced;                 // path traced; else a row with other settings
     uint32_t samples;            // per pixel, when it is traced
@@ -106,7 +96,7 @@ typedef struct bench_results {
     const char *cpu, *os; // of the machine
     uint32_t cores;
     const char *date; // ISO 8601, of the start
-    bench_axis *axes;
+    sweep_axis *axes;
     size_t axis_count;
     bool has_reference;
     bench_reference reference;
@@ -129,6 +119,13 @@ bool bench_write(const bench_results *r, const char *folder);
 bench_row *bench_find(const bench_results *r, size_t index); // NULL: not measured
 // Adds a deep copy of `row`, or replaces the row of that index.
 void bench_add(bench_results *r, const bench_row *row);
+
+// Adds a deep copy; `axes` has room.
+void bench_add_axis(bench_results *r, const sweep_axis *axis);
+// Takes the rows and the date of results in `folder`, if there are any, as of an earlier run that
+// was interrupted. False with a message when these are of something else, for which `other` says
+// what it is, or of another device; and where `exactly`, of another driver or commit.
+bool bench_take_earlier(bench_results *r, const char *folder, const char *other, bool exactly);
 
 const bench_figure *bench_get_time(const bench_times *t, const char *name); // NULL: none
 // Returns the time by which rows are compared: GPU time of all passes, else its first other time.

@@ -17,10 +17,6 @@ static bench_settings copy_pairs(const sweep_pair *pairs, size_t count, arena *m
 }
 
 static bench_row plan_row(const sweep_row *from, size_t index, arena *memory) {
-    bench_numbers published = {arena_alloc(memory, from->published_count * sizeof *published.items),
-                               from->published_count};
-    for (size_t i = 0; i < published.count; i++)
-        published.items[i] = (bench_number){from->published[i].name, from->published[i].value};
     return (bench_row){
         .index = index,
         .label = from->label,
@@ -36,7 +32,7 @@ static bench_row plan_row(const sweep_row *from, size_t index, arena *memory) {
         .limit = from->limit,
         .settings = copy_pairs(from->settings, from->setting_count, memory),
         .message = "",
-        .published = published,
+        .published = {from->published, from->published_count},
     };
 }
 
@@ -57,16 +53,12 @@ static bench_job plan_job(const sweep *s, const sweep_row *from, const bench_row
 
 // ---- what is measured, as a hash ----------------------------------------------------------------
 
-static hash128 add_text(hash128 h, const char *text) {
-    return hash_combine(h, hash_bytes(text, strlen(text)));
-}
-
 // Hashes the content of the effect's file, so that rows from before and after an edit are not
 // mixed.
 static hash128 add_effect(hash128 h, const sweep_row *row) {
     void *data;
     size_t size;
-    h = add_text(h, path_name(row->effect));
+    h = hash_add_text(h, path_name(row->effect));
     if (!file_read_inside(row->inside, row->effect, EFFECT_MAX, &data, &size)) return h;
     h = hash_combine(h, hash_bytes(data, size));
     mem_free(data);
@@ -78,10 +70,10 @@ static hash128 add_row(hash128 h, const sweep_row *row) {
                         row->warmup, row->repeats, row->limit, row->empty_cache};
     h = hash_combine(h, hash_bytes(numbers, sizeof numbers));
     h = hash_combine(h, hash_bytes(row->frames, row->frame_count * sizeof *row->frames));
-    h = add_text(add_text(h, row->label), row->command);
+    h = hash_add_text(hash_add_text(h, row->label), row->command);
     for (size_t i = 0; i < row->setting_count; i++)
-        h = add_text(add_text(h, row->settings[i].name), row->settings[i].text);
-    for (size_t i = 0; i < row->edit_count; i++) h = add_text(h, row->edits[i]);
+        h = hash_add_text(hash_add_text(h, row->settings[i].name), row->settings[i].text);
+    for (size_t i = 0; i < row->edit_count; i++) h = hash_add_text(h, row->edits[i]);
     return h;
 }
 
@@ -102,21 +94,6 @@ static const char *content_of(const sweep *s, arena *memory) {
 
 // ---- results ------------------------------------------------------------------------------------
 
-static const char *results_keep(bench_results *r, const char *text) {
-    return arena_string(&r->memory, text);
-}
-
-static void describe_axes(bench_results *r, const sweep *s) {
-    r->axes = arena_alloc(&r->memory, s->axis_count * sizeof *r->axes);
-    for (; r->axis_count < s->axis_count; r->axis_count++) {
-        const sweep_axis *from = &s->axes[r->axis_count];
-        const char **values = arena_alloc(&r->memory, from->value_count * sizeof *values);
-        for (size_t i = 0; i < from->value_count; i++) values[i] = results_keep(r, from->values[i]);
-        r->axes[r->axis_count] = (bench_axis){
-            results_keep(r, from->name), results_keep(r, from->label), values, from->value_count};
-    }
-}
-
 static void describe_reference(bench_results *r, const sweep *s) {
     r->has_reference = s->reference_count > 0;
     r->reference.traced = s->samples > 0;
@@ -124,50 +101,29 @@ static void describe_reference(bench_results *r, const sweep *s) {
     r->reference.settings.items =
         arena_alloc(&r->memory, s->reference_setting_count * sizeof(roil_setting));
     for (size_t i = 0; i < s->reference_setting_count; i++)
-        r->reference.settings.items[r->reference.settings.count++] = (roil_setting){
-            results_keep(r, s->reference[i].name), results_keep(r, s->reference[i].text)};
+        r->reference.settings.items[r->reference.settings.count++] =
+            (roil_setting){arena_string(&r->memory, s->reference[i].name),
+                           arena_string(&r->memory, s->reference[i].text)};
 }
 
 static void results_describe(bench_results *r, const sweep *s, roil *device) {
     *r = (bench_results){0};
-    r->version = results_keep(r, roil_version());
+    r->version = arena_string(&r->memory, roil_version());
     r->commit = bench_commit(roil_home(device), &r->memory);
-    r->sweep = results_keep(r, s->name);
-    r->title = results_keep(r, s->title);
-    r->file = results_keep(r, s->file);
+    r->sweep = arena_string(&r->memory, s->name);
+    r->title = arena_string(&r->memory, s->title);
+    r->file = arena_string(&r->memory, s->file);
     r->content = content_of(s, &r->memory);
     const char **notes = arena_alloc(&r->memory, s->note_count * sizeof *notes);
-    for (size_t i = 0; i < s->note_count; i++) notes[i] = results_keep(r, s->notes[i]);
+    for (size_t i = 0; i < s->note_count; i++) notes[i] = arena_string(&r->memory, s->notes[i]);
     r->notes = notes;
     r->note_count = s->note_count;
-    r->device = results_keep(r, roil_device_name(device));
-    r->driver = results_keep(r, roil_device_driver(device));
+    r->device = arena_string(&r->memory, roil_device_name(device));
+    r->driver = arena_string(&r->memory, roil_device_driver(device));
     bench_describe_machine(r);
-    describe_axes(r, s);
+    r->axes = arena_alloc(&r->memory, s->axis_count * sizeof *r->axes);
+    for (size_t i = 0; i < s->axis_count; i++) bench_add_axis(r, &s->axes[i]);
     describe_reference(r, s);
-}
-
-// Takes rows of an earlier run that was interrupted.
-static bool take_earlier(bench_results *r, const char *folder) {
-    bench_results old;
-    char path[PATH_CAP];
-    if (!path_join(path, folder, "results.json")) return false;
-    if (!file_exists(path)) return true;
-    if (!bench_read(folder, &old)) return false;
-    bool same = true;
-    if (strcmp(old.content, r->content) != 0)
-        same = err_set("%s is of another sweep, or of other options or effects; measure again "
-                       "without --resume, or into another folder",
-                       path);
-    else if (strcmp(old.device, r->device) != 0 || strcmp(old.driver, r->driver) != 0)
-        same = err_set("%s was measured on %s (%s), this is %s (%s)", path, old.device, old.driver,
-                       r->device, r->driver);
-    else if (strcmp(old.commit, r->commit) != 0)
-        same = err_set("%s was measured at commit %s, this is %s", path, old.commit, r->commit);
-    for (size_t i = 0; same && i < old.row_count; i++) bench_add(r, &old.rows[i]);
-    if (same) r->date = results_keep(r, old.date);
-    bench_results_free(&old);
-    return same;
 }
 
 // ---- running ------------------------------------------------------------------------------------
@@ -287,7 +243,11 @@ bool bench_run(const bench_order *order, bench_results *out) {
         for (size_t i = 0; i < s.reference_count; i++)
             u.references[i] = plan_row(&s.references[i], i, &memory);
         results_describe(out, &s, bench_roil(u.session));
-        done = (!order->resume || take_earlier(out, order->folder)) &&
+        done = (!order->resume ||
+                bench_take_earlier(out, order->folder,
+                                   "another sweep, or of other options or effects; measure again "
+                                   "without --resume, or into another folder",
+                                   true)) &&
                bench_write(out, order->folder) && run_rows(&u);
     } else {
         done = false;

@@ -8,11 +8,9 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/memory.h"
-#include "base/str.h"
 #include "bench/report.h"
 #include "bench/sweep.h"
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 enum { PLACES = 3, RUN = 1, LONG_RUN = 8, MOST_COMPARED = 8, EFFECT_MAX = 16 << 20 };
@@ -258,10 +256,6 @@ static bool tuning_plan(tuning *t) {
 
 // ---- results ------------------------------------------------------------------------------------
 
-static hash128 add_text(hash128 h, const char *text) {
-    return hash_combine(h, hash_bytes(text, strlen(text)));
-}
-
 static const char *content_of(const tuning *t) {
     const tune_order *o = t->order;
     void *data;
@@ -274,10 +268,10 @@ static const char *content_of(const tuning *t) {
         mem_free(data);
     }
     for (size_t i = 0; i < o->setting_count; i++)
-        h = add_text(add_text(h, o->settings[i].name), o->settings[i].value);
+        h = hash_add_text(hash_add_text(h, o->settings[i].name), o->settings[i].value);
     for (size_t i = 0; i < t->reference.axes.count; i++)
-        h = add_text(add_text(h, t->reference.axes.items[i].name),
-                     t->reference.axes.items[i].value);
+        h = hash_add_text(hash_add_text(h, t->reference.axes.items[i].name),
+                          t->reference.axes.items[i].value);
     char hex[33];
     hash_to_hex(h, hex);
     return arena_string(&t->results->memory, hex);
@@ -288,19 +282,6 @@ static const char *goal_text(const tune_goal *g, arena *memory) {
     return g->error == TUNE_FLIP
                ? arena_format(memory, "the least time within FLIP %g", g->limit)
                : arena_format(memory, "the least time from PSNR %g dB on", g->limit);
-}
-
-static void describe_axes(tuning *t) {
-    bench_results *r = t->results;
-    r->axes = arena_alloc(&r->memory, t->result->axis_count * sizeof *r->axes);
-    for (; r->axis_count < t->result->axis_count; r->axis_count++) {
-        const tune_axis *from = &t->result->axes[r->axis_count];
-        const char **values = arena_alloc(&r->memory, from->count * sizeof *values);
-        for (size_t i = 0; i < from->count; i++)
-            values[i] = arena_string(&r->memory, from->values[i]);
-        const char *name = arena_string(&r->memory, from->name);
-        r->axes[r->axis_count] = (bench_axis){name, name, values, from->count};
-    }
 }
 
 static void tuning_describe(tuning *t) {
@@ -318,7 +299,11 @@ static void tuning_describe(tuning *t) {
     r->driver = arena_string(memory, roil_device_driver(device));
     r->by_process = roil_is_software(device);
     bench_describe_machine(r);
-    describe_axes(t);
+    r->axes = arena_alloc(memory, t->result->axis_count * sizeof *r->axes);
+    for (size_t i = 0; i < t->result->axis_count; i++) {
+        tune_axis *a = &t->result->axes[i];
+        bench_add_axis(r, &(sweep_axis){a->name, a->name, a->values, a->count});
+    }
     r->has_reference = true;
     r->reference.traced = t->order->samples > 0;
     r->reference.samples = t->order->samples;
@@ -327,24 +312,6 @@ static void tuning_describe(tuning *t) {
     for (size_t i = 0; !t->order->samples && i < t->reference.axes.count; i++)
         add_setting(&r->reference.settings, arena_string(memory, t->reference.axes.items[i].name),
                     arena_string(memory, t->reference.axes.items[i].value));
-}
-
-static bool take_earlier(tuning *t) {
-    bench_results old;
-    char path[PATH_CAP];
-    if (!path_join(path, t->order->folder, "results.json")) return false;
-    if (!file_exists(path)) return true;
-    if (!bench_read(t->order->folder, &old)) return false;
-    bool same = true;
-    if (strcmp(old.content, t->results->content) != 0)
-        same = err_set("%s is of another effect, or of other options; search again without "
-                       "--resume, or into another folder",
-                       path);
-    else if (strcmp(old.device, t->results->device) != 0)
-        same = err_set("%s was measured on %s, this is %s", path, old.device, t->results->device);
-    for (size_t i = 0; same && i < old.row_count; i++) bench_add(t->results, &old.rows[i]);
-    bench_results_free(&old);
-    return same;
 }
 
 // ---- the search ---------------------------------------------------------------------------------
@@ -397,8 +364,12 @@ bool bench_tune(const tune_order *order, bench_results *out, tune_result *result
     done = t.session != NULL;
     if (done) {
         tuning_describe(&t);
-        done = (!order->resume || take_earlier(&t)) && bench_write(out, order->folder) &&
-               tuning_search(&t);
+        done = (!order->resume ||
+                bench_take_earlier(out, order->folder,
+                                   "another effect, or of other options; search again without "
+                                   "--resume, or into another folder",
+                                   false)) &&
+               bench_write(out, order->folder) && tuning_search(&t);
     }
     bench_close(t.session);
     arena_free(&t.memory);

@@ -19,7 +19,7 @@ sweep_reader *sweep_reader_of(lua_State *L) {
     return vm_user(L);
 }
 
-static void *sweep_reserve(lua_State *L, size_t count, size_t size) {
+void *sweep_reserve(lua_State *L, size_t count, size_t size) {
     vm_charge_memory(L, count * size);
     return arena_alloc(sweep_reader_of(L)->memory, count * size);
 }
@@ -349,11 +349,10 @@ static int l_sweep(lua_State *L) {
 
 static int run_file(lua_State *L) {
     sweep_reader *r = lua_touserdata(L, 1);
-    static const luaL_Reg none[] = {{NULL, NULL}};
     static const luaL_Reg words[] = {{"axis", l_axis}, {"zip", l_zip}, {"sweep", l_sweep}};
     static const char *const types[] = {axis_type, zip_type, sweep_type};
     for (size_t i = 0; i < COUNT_OF(words); i++) {
-        object_type(L, types[i], none);
+        object_type(L, types[i], NULL);
         lua_pushcfunction(L, words[i].func);
         lua_setglobal(L, words[i].name);
     }

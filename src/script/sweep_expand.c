@@ -1,7 +1,6 @@
 // Expands sweeps: axes are combined, and each combination becomes a row; so do the rows that
 // pictures are compared with.
 #include "base/hash.h"
-#include "base/memory.h"
 #include "script/binding.h"
 #include "script/sweep_parts.h"
 #include <math.h>
@@ -15,11 +14,6 @@ typedef struct combination { // one value of each axis, axes in order
     const sweep_value *values[SWEEP_MAX_AXES];
     size_t count;
 } combination;
-
-static void *reserve(lua_State *L, size_t count, size_t size) {
-    vm_charge_memory(L, count * size);
-    return arena_alloc(sweep_reader_of(L)->memory, count * size);
-}
 
 // ---- one row ----------------------------------------------------------------------------------
 
@@ -83,7 +77,7 @@ static sweep_row make_row(lua_State *L, sweep_reader *r, const combination *c, b
                      .reference = SWEEP_NO_REFERENCE};
     size_t room = r->base.setting_count + r->reference.setting_count;
     for (size_t i = 0; i < c->count; i++) room += c->values[i]->patch.setting_count;
-    row.settings = reserve(L, room, sizeof *row.settings);
+    row.settings = sweep_reserve(L, room, sizeof *row.settings);
     apply(&row, &r->base);
     for (size_t i = 0; i < c->count; i++) {
         const sweep_value *stands_in = reference ? r->reference_axes[i] : NULL;
@@ -102,7 +96,7 @@ static sweep_row make_row(lua_State *L, sweep_reader *r, const combination *c, b
 static void name_row(lua_State *L, sweep_reader *r, const combination *c, sweep_row *row) {
     r->text.length = 0;
     strbuf_append(&r->text, "", 0);
-    row->axes = reserve(L, c->count, sizeof *row->axes);
+    row->axes = sweep_reserve(L, c->count, sizeof *row->axes);
     for (size_t i = 0; i < c->count; i++) {
         row->axes[row->axis_count++] = (sweep_pair){c->lists[i]->name, c->values[i]->text};
         strbuf_add(&r->text, "%s%.*s", i ? ", " : "", LABEL_MAX, c->values[i]->label);
@@ -160,7 +154,7 @@ static void ask_published(lua_State *L, sweep_reader *r, const combination *c, s
         if (count > MAX_PUBLISHED)
             vm_error(L, "sweep: 'published' returned %d figures; at most %d are accepted",
                      (int)count, MAX_PUBLISHED);
-        row->published = reserve(L, count, sizeof *row->published);
+        row->published = sweep_reserve(L, count, sizeof *row->published);
         for (size_t i = 0; i < count; i++) {
             lua_pushstring(L, names[i]);
             const char *name = sweep_take_text(L, "sweep", "published");
@@ -175,18 +169,14 @@ static void ask_published(lua_State *L, sweep_reader *r, const combination *c, s
 
 // ---- references -------------------------------------------------------------------------------
 
-static hash128 add_text(hash128 h, const char *text) {
-    return hash_combine(h, hash_bytes(text, strlen(text)));
-}
-
 // Hashes everything that the row's pictures depend on.
 static hash128 row_hash(const sweep_row *row) {
     double numbers[] = {row->width, row->height, row->first, row->last, row->warmup};
     hash128 h = hash_combine(hash_bytes(numbers, sizeof numbers),
                              hash_bytes(row->frames, row->frame_count * sizeof *row->frames));
-    h = add_text(h, row->effect);
+    h = hash_add_text(h, row->effect);
     for (size_t i = 0; i < row->setting_count; i++)
-        h = add_text(add_text(h, row->settings[i].name), row->settings[i].text);
+        h = hash_add_text(hash_add_text(h, row->settings[i].name), row->settings[i].text);
     return h;
 }
 
@@ -196,7 +186,7 @@ static size_t find_reference(lua_State *L, sweep_reader *r, const combination *c
     sweep_row row = make_row(L, r, c, true);
     hash128 h = row_hash(&row);
     for (size_t i = 0; i < s->reference_count; i++)
-        if (known[i].low == h.low && known[i].high == h.high) return i;
+        if (hash_equal(known[i], h)) return i;
     row.label = "reference";
     known[s->reference_count] = h;
     s->references[s->reference_count] = row;
@@ -286,10 +276,10 @@ static void scale_sizes(lua_State *L, sweep_reader *r) {
 static void keep_axes(lua_State *L, sweep_reader *r) {
     sweep *s = r->out;
     combination any = pick(r, 0);
-    s->axes = reserve(L, any.count, sizeof *s->axes);
+    s->axes = sweep_reserve(L, any.count, sizeof *s->axes);
     for (size_t i = 0; i < any.count; i++) {
         const sweep_list *l = any.lists[i];
-        const char **values = reserve(L, l->count, sizeof *values);
+        const char **values = sweep_reserve(L, l->count, sizeof *values);
         for (size_t k = 0; k < l->count; k++) values[k] = l->values[k].text;
         s->axes[s->axis_count++] = (sweep_axis){l->name, l->label, values, l->count};
     }
@@ -301,9 +291,9 @@ void sweep_expand(lua_State *L, sweep_reader *r) {
     size_t room = all < SWEEP_MAX_ROWS ? all : SWEEP_MAX_ROWS;
     scale_sizes(L, r);
     keep_axes(L, r);
-    s->rows = reserve(L, room, sizeof *s->rows);
-    s->references = reserve(L, room, sizeof *s->references);
-    hash128 *known = reserve(L, room, sizeof *known);
+    s->rows = sweep_reserve(L, room, sizeof *s->rows);
+    s->references = sweep_reserve(L, room, sizeof *s->references);
+    hash128 *known = sweep_reserve(L, room, sizeof *known);
     for (size_t i = 0; i < all; i++) {
         vm_charge(L, COMBINATION_COST);
         combination c = pick(r, i);

@@ -60,6 +60,7 @@ typedef struct sweep_reader { // owned outside of Lua, so that errors do not los
 } sweep_reader;
 
 sweep_reader *sweep_reader_of(lua_State *L);
+void *sweep_reserve(lua_State *L, size_t count, size_t size); // zeroed; lives with the sweep
 
 // ---- sweep_value.c: all raise errors ----------------------------------------------------------
 

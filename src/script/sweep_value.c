@@ -53,11 +53,6 @@ static const char *keep(lua_State *L, const char *text) {
     return arena_string(sweep_reader_of(L)->memory, text);
 }
 
-static void *reserve(lua_State *L, size_t count, size_t size) {
-    vm_charge_memory(L, count * size);
-    return arena_alloc(sweep_reader_of(L)->memory, count * size);
-}
-
 // Texts of a file are shown on terminals and in tables. `lines`: it may contain line breaks.
 static const char *take_text(lua_State *L, const char *who, const char *key, bool lines) {
     size_t length;
@@ -144,7 +139,7 @@ static void take_frame_list(lua_State *L, const char *who, sweep_patch *patch) {
     lua_Unsigned count = lua_type(L, -1) == LUA_TTABLE ? lua_rawlen(L, -1) : 0;
     if (count < 1 || count > SWEEP_MAX_FRAMES)
         wrong(L, who, "frames", "a number, a text as \"1-100\" or a list {10, 30}");
-    patch->frames = reserve(L, count, sizeof *patch->frames);
+    patch->frames = sweep_reserve(L, count, sizeof *patch->frames);
     patch->frame_count = count;
     for (size_t i = 0; i < count; i++) {
         lua_rawgeti(L, -1, (lua_Integer)i + 1);
@@ -157,7 +152,7 @@ static void take_frames(lua_State *L, const char *who, sweep_patch *patch) {
     patch->first = patch->last = 0;
     switch (lua_type(L, -1)) {
     case LUA_TNUMBER:
-        patch->frames = reserve(L, 1, sizeof *patch->frames);
+        patch->frames = sweep_reserve(L, 1, sizeof *patch->frames);
         patch->frames[0] = sweep_take_number(L, who, "frames", 0, 1e9);
         patch->frame_count = 1;
         return;
@@ -190,7 +185,7 @@ static void take_edits(lua_State *L, const char *who, sweep_patch *patch) {
     lua_Unsigned count = lua_type(L, -1) == LUA_TTABLE ? lua_rawlen(L, -1) : 0;
     if (count < 2 || count > MAX_EDITS)
         wrong(L, who, "edit", "a list {text of the effect, text in its place, ...}");
-    patch->edits = reserve(L, count, sizeof *patch->edits);
+    patch->edits = sweep_reserve(L, count, sizeof *patch->edits);
     patch->edit_count = count;
     for (size_t i = 0; i < count; i++) {
         lua_rawgeti(L, -1, (lua_Integer)i + 1);
@@ -239,7 +234,7 @@ static void take_setting(lua_State *L, const char *who, const char *key, sweep_p
         vm_error(L, "%s: '%.64s' is no name of a setting (letters, digits, _ and .)", who, key);
     if (patch->setting_count >= SWEEP_MAX_SETTINGS)
         vm_error(L, "%s: more than %d settings", who, SWEEP_MAX_SETTINGS);
-    sweep_pair *more = reserve(L, patch->setting_count + 1, sizeof *more);
+    sweep_pair *more = sweep_reserve(L, patch->setting_count + 1, sizeof *more);
     if (patch->setting_count) memcpy(more, patch->settings, patch->setting_count * sizeof *more);
     more[patch->setting_count++] = (sweep_pair){keep(L, key), setting_text_of(L, who, key)};
     patch->settings = more;

@@ -50,10 +50,6 @@ void binary_memo_destroy(binary_memo *m) {
 
 // ---- keys -------------------------------------------------------------------------------------
 
-static void hash_text(hash128 *h, const char *text) {
-    *h = hash_combine(*h, hash_bytes(text ? text : "", text ? strlen(text) : 0));
-}
-
 // Of all that a compile is asked for, but the content of files.
 static hash128 key_of(const shader_compile_desc *desc) {
     const uint64_t numbers[] = {desc->stage, desc->counters, desc->define_count, desc->text_count,
@@ -61,26 +57,20 @@ static hash128 key_of(const shader_compile_desc *desc) {
     hash128 h = hash_bytes(numbers, sizeof numbers);
     if (desc->options)
         h = hash_combine(h, hash_bytes(desc->options, desc->option_count * sizeof *desc->options));
-    hash_text(&h, desc->name);
+    h = hash_add_text(h, desc->name);
     for (size_t i = 0; i < desc->define_count; i++) {
-        hash_text(&h, desc->defines[i].name);
-        hash_text(&h, desc->defines[i].value);
+        h = hash_add_text(h, desc->defines[i].name);
+        h = hash_add_text(h, desc->defines[i].value);
     }
     for (size_t i = 0; i < desc->text_count; i++) {
-        hash_text(&h, desc->texts[i].name);
-        hash_text(&h, desc->texts[i].text);
+        h = hash_add_text(h, desc->texts[i].name);
+        h = hash_add_text(h, desc->texts[i].text);
     }
     return h;
 }
 
 static hash128 interface_key(const char *name) {
-    hash128 h = {0};
-    hash_text(&h, name);
-    return h;
-}
-
-static bool is_equal(hash128 a, hash128 b) {
-    return a.low == b.low && a.high == b.high;
+    return hash_add_text((hash128){0}, name);
 }
 
 // ---- copies -----------------------------------------------------------------------------------
@@ -191,7 +181,7 @@ static bool holds(const shader_library *library, const entry *e) {
         if (file->where.path)
             same = memo_hash(library->memo, library->roots[file->where.root], file->where.path,
                              &now) &&
-                   is_equal(now, file->hash);
+                   hash_equal(now, file->hash);
     }
     arena_free(&scratch);
     return same;
@@ -199,7 +189,7 @@ static bool holds(const shader_library *library, const entry *e) {
 
 static entry *find(binary_memo *m, hash128 key) {
     for (size_t i = 0; i < m->count; i++)
-        if (is_equal(m->entries[i].key, key)) return &m->entries[i];
+        if (hash_equal(m->entries[i].key, key)) return &m->entries[i];
     return NULL;
 }
 

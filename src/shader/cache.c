@@ -27,10 +27,6 @@ static bool path_of(const shader_library *library, hash128 key, char out[PATH_CA
     return path_join(out, library->cache_dir, name);
 }
 
-static bool equal(hash128 a, hash128 b) {
-    return a.low == b.low && a.high == b.high;
-}
-
 bool cache_load(const shader_library *library, hash128 key, spirv *out) {
     char path[PATH_CAP];
     void *data;
@@ -45,7 +41,8 @@ bool cache_load(const shader_library *library, hash128 key, spirv *out) {
         memcpy(&header, data, sizeof header);
         valid = memcmp(header.magic, magic, sizeof magic) == 0 &&
                 header.size == size - sizeof header && header.size % sizeof(uint32_t) == 0 &&
-                equal(header.key, key) && equal(header.hash, hash_bytes(code, header.size));
+                hash_equal(header.key, key) &&
+                hash_equal(header.hash, hash_bytes(code, header.size));
     }
     if (valid) {
         out->words = mem_copy(code, header.size);

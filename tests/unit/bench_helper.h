@@ -66,7 +66,7 @@ static inline void helper_head(bench_results *r) {
                          .cores = 2,
                          .date = "2026-11-21T18:00:00Z"};
     r->axes = arena_alloc(&r->memory, sizeof *r->axes);
-    r->axes[r->axis_count++] = (bench_axis){"steps", "steps", values, 3};
+    r->axes[r->axis_count++] = (sweep_axis){"steps", "steps", values, 3};
 }
 
 static char helper_folder[PATH_CAP];

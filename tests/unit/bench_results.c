@@ -13,9 +13,9 @@ static bench_row full_row(arena *memory) {
     row.times.items = arena_alloc(memory, sizeof *row.times.items);
     row.times.items[row.times.count++] = (bench_time){"reload", {30, 20, 40, 9, NULL}};
     row.counters.items = arena_alloc(memory, sizeof *row.counters.items);
-    row.counters.items[row.counters.count++] = (bench_number){"march.samples", 123456789};
+    row.counters.items[row.counters.count++] = (sweep_number){"march.samples", 123456789};
     row.published.items = arena_alloc(memory, sizeof *row.published.items);
-    row.published.items[row.published.count++] = (bench_number){"a card", 7.21};
+    row.published.items[row.published.count++] = (sweep_number){"a card", 7.21};
     row.device_bytes = 1 << 20;
     row.reserved_bytes = 2 << 20;
     row.host_bytes = 3 << 20;
