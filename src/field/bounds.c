@@ -36,7 +36,8 @@ static bool bounds_by_zeros(const field *node, const field_context *context, con
         else if (!kind_uniform_arg(node, i, context, values[i]))
             return false;
     }
-    node->kind->eval(node, context, (float3){0, 0, 0}, (const float(*)[4])values, out);
+    node->kind->eval(&(field_point){.node = node, .context = context}, (const float(*)[4])values,
+                     out);
     if (is_zero(out, node->components)) *box = all;
     return true;
 }

@@ -108,6 +108,7 @@ static void compute(const evaluation *e, const field *node, const points *p, siz
     size_t varying[FIELD_MAX_ARGS], count = 0;
     const float(*args)[4] = (const float(*)[4])(p->count == 1 ? columns : row);
     field_context here;
+    field_point at = {.node = node, .context = p->instances ? &here : e->context};
     if (p->instances) here = *e->context;
     for (size_t a = first; a < FIELD_MAX_ARGS && node->args[a] && p->count > 1; a++) {
         memcpy(row[a], columns[a * p->count], sizeof row[a]);
@@ -117,10 +118,11 @@ static void compute(const evaluation *e, const field *node, const points *p, siz
         for (size_t k = 0; k < count; k++)
             memcpy(row[varying[k]], columns[varying[k] * p->count + i], sizeof *row);
         if (p->instances) here.instance = &p->instances[i];
+        at.p = p->at[i];
         if (to)
-            to[i] = moved(node, p->at[i], args);
+            to[i] = moved(node, at.p, args);
         else
-            node->kind->eval(node, p->instances ? &here : e->context, p->at[i], args, out[i]);
+            node->kind->eval(&at, args, out[i]);
     }
 }
 

@@ -50,6 +50,18 @@ typedef struct field_context { // what values depend on besides space
     float unread; // of ranges alone: values that grids are taken to have before any is read; 0: any
 } field_context;
 
+typedef struct field_point { // where a node is evaluated
+    const field *node;
+    const field_context *context;
+    float3 p;
+} field_point;
+
+typedef struct field_box { // where its range is asked for: points in the box `at`
+    const field *node;
+    const field_context *context;
+    const struct intervals *at;
+} field_box;
+
 struct field_kind {
     const char *name;               // as Lua names it: "worley"
     const char *group;              // "value", "source", "noise", "shape", "operator"
@@ -62,15 +74,13 @@ struct field_kind {
     const char *function; // NULL: the generator and the evaluator have a case of their own
     bool spatial;         // depends on p by itself
     float cost;           // rough arithmetic operations: cheap factors of a product come first
-    void (*eval)(const field *node, const field_context *context, float3 p, const float (*args)[4],
-                 float out[4]);
+    void (*eval)(const struct field_point *at, const float (*args)[4], float out[4]);
     // Box outside of which the result is zero, from the arguments' boxes. NULL: by what the kind
     // makes of zeros.
     box3 (*bounds)(const field *node, const field_context *context, const box3 *args);
     // Least and greatest value in a box (range.h), in C and in GLSL, where it is a function of
     // ranges in the place of `function`; NULL: the generator has a case of its own.
-    struct intervals (*ranges)(const field *node, const field_context *context,
-                               const struct intervals *at, const struct intervals *args);
+    struct intervals (*ranges)(const struct field_box *in, const struct intervals *args);
     const char *range_function;
 };
 

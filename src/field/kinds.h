@@ -29,8 +29,7 @@ static inline int kind_of(const field *node) {
     return (int)(node->kind - field_kinds);
 }
 
-typedef void kind_eval(const field *node, const field_context *context, float3 p,
-                       const float (*args)[4], float out[4]);
+typedef void kind_eval(const field_point *at, const float (*args)[4], float out[4]);
 typedef box3 kind_bounds(const field *node, const field_context *context, const box3 *args);
 
 kind_eval eval_constant, eval_palette, eval_swizzle, eval_position, eval_add, eval_sub, eval_mul,

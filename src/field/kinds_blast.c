@@ -56,37 +56,29 @@ static float away_from(const float centre[4], float3 p, float way[3]) {
     return sqrtf(way[0] * way[0] + way[1] * way[1] + way[2] * way[2]);
 }
 
-void eval_blast_pressure(const field *node, const field_context *context, float3 p,
-                         const float (*a)[4], float out[4]) {
-    (void)node, (void)context;
+void eval_blast_pressure(const field_point *at, const float (*a)[4], float out[4]) {
     float way[3];
-    const float scale = blast_scale(a[2][0]), z = away_from(a[0], p, way) / scale;
+    const float scale = blast_scale(a[2][0]), z = away_from(a[0], at->p, way) / scale;
     const float excess = blast_excess(z);
     out[0] = ambient * excess * pulse(z, a[1][0] / scale, excess);
 }
 
-void eval_blast_velocity(const field *node, const field_context *context, float3 p,
-                         const float (*a)[4], float out[4]) {
-    (void)node, (void)context;
+void eval_blast_velocity(const field_point *at, const float (*a)[4], float out[4]) {
     float way[3];
-    const float scale = blast_scale(a[2][0]), away = away_from(a[0], p, way), z = away / scale;
+    const float scale = blast_scale(a[2][0]), away = away_from(a[0], at->p, way), z = away / scale;
     const float excess = blast_excess(z);
     const float fast = blast_speed(excess) * pulse(z, a[1][0] / scale, excess);
     for (int i = 0; i < 3; i++) out[i] = fast / fmaxf(away, 1e-20f) * way[i];
 }
 
-void eval_blast_impulse(const field *node, const field_context *context, float3 p,
-                        const float (*a)[4], float out[4]) {
-    (void)node, (void)context;
+void eval_blast_impulse(const field_point *at, const float (*a)[4], float out[4]) {
     float way[3];
     const float scale = blast_scale(a[1][0]);
-    out[0] = scale * blast_impulse(away_from(a[0], p, way) / scale);
+    out[0] = scale * blast_impulse(away_from(a[0], at->p, way) / scale);
 }
 
-void eval_blast_arrival(const field *node, const field_context *context, float3 p,
-                        const float (*a)[4], float out[4]) {
-    (void)node, (void)context;
+void eval_blast_arrival(const field_point *at, const float (*a)[4], float out[4]) {
     float way[3];
     const float scale = blast_scale(a[1][0]);
-    out[0] = scale * blast_front(away_from(a[0], p, way) / scale);
+    out[0] = scale * blast_front(away_from(a[0], at->p, way) / scale);
 }

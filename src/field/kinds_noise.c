@@ -55,19 +55,15 @@ static void numbers(const field *node, const intervals *args, float out[FIELD_MA
 }
 
 #define SCALAR_NOISE(NAME, BASE, DESCRIBE)                                                         \
-    void eval_##NAME(const field *node, const field_context *context, float3 p,                    \
-                     const float(*args)[4], float out[4]) {                                        \
-        (void)context;                                                                             \
-        noise_desc desc = DESCRIBE(node, args);                                                    \
-        out[0] = noise_eval(BASE, &desc, p);                                                       \
+    void eval_##NAME(const field_point *at, const float(*args)[4], float out[4]) {                 \
+        noise_desc desc = DESCRIBE(at->node, args);                                                \
+        out[0] = noise_eval(BASE, &desc, at->p);                                                   \
     }                                                                                              \
-    intervals ranges_##NAME(const field *node, const field_context *context, const intervals *at,  \
-                            const intervals *args) {                                               \
-        (void)context;                                                                             \
+    intervals ranges_##NAME(const field_box *in, const intervals *args) {                          \
         float values[FIELD_MAX_ARGS][4];                                                           \
-        numbers(node, args, values);                                                               \
-        noise_desc desc = DESCRIBE(node, (const float(*)[4])values);                               \
-        return (intervals){{range_mul(args[AMPLITUDE].c[0], noise_range(BASE, &desc, at))}};       \
+        numbers(in->node, args, values);                                                           \
+        noise_desc desc = DESCRIBE(in->node, (const float(*)[4])values);                           \
+        return (intervals){{range_mul(args[AMPLITUDE].c[0], noise_range(BASE, &desc, in->at))}};   \
     }
 
 SCALAR_NOISE(perlin, NOISE_PERLIN, describe_scalar)
@@ -75,20 +71,16 @@ SCALAR_NOISE(value, NOISE_VALUE, describe_scalar)
 SCALAR_NOISE(simplex, NOISE_SIMPLEX, describe_simplex)
 SCALAR_NOISE(worley, NOISE_WORLEY, describe_worley)
 
-void eval_curl(const field *node, const field_context *context, float3 p, const float (*args)[4],
-               float out[4]) {
-    (void)context;
-    noise_desc desc = describe_curl(node, args);
-    noise_curl(&desc, p, out);
+void eval_curl(const field_point *at, const float (*args)[4], float out[4]) {
+    noise_desc desc = describe_curl(at->node, args);
+    noise_curl(&desc, at->p, out);
 }
 
-intervals ranges_curl(const field *node, const field_context *context, const intervals *at,
-                      const intervals *args) {
-    (void)context;
+intervals ranges_curl(const field_box *in, const intervals *args) {
     float values[FIELD_MAX_ARGS][4];
-    numbers(node, args, values);
-    noise_desc desc = describe_curl(node, (const float(*)[4])values);
-    intervals out = noise_curl_ranges(&desc, at);
+    numbers(in->node, args, values);
+    noise_desc desc = describe_curl(in->node, (const float(*)[4])values);
+    intervals out = noise_curl_ranges(&desc, in->at);
     for (int i = 0; i < 3; i++) out.c[i] = range_mul(args[AMPLITUDE].c[0], out.c[i]);
     return out;
 }

@@ -8,10 +8,8 @@
 static const double degree = 3.14159265358979323846 / 180;
 
 #define EACH(NAME, EXPRESSION)                                                                     \
-    void eval_##NAME(const field *node, const field_context *context, float3 p,                    \
-                     const float(*args)[4], float out[4]) {                                        \
-        (void)context, (void)p;                                                                    \
-        for (int i = 0; i < node->components; i++) out[i] = EXPRESSION;                            \
+    void eval_##NAME(const field_point *at, const float(*args)[4], float out[4]) {                 \
+        for (int i = 0; i < at->node->components; i++) out[i] = EXPRESSION;                        \
     }
 #define A args[0][i]
 #define B args[1][i]
@@ -51,88 +49,71 @@ EACH(floor, floorf(A))
 EACH(fract, A - floorf(A))
 EACH(remap, args[3][i] + divide(A - B, C - B) * (args[4][i] - args[3][i]))
 
-void eval_constant(const field *node, const field_context *context, float3 p,
-                   const float (*args)[4], float out[4]) {
-    (void)context, (void)p, (void)args;
-    memcpy(out, node->value, sizeof node->value);
+void eval_constant(const field_point *at, const float (*args)[4], float out[4]) {
+    (void)args;
+    memcpy(out, at->node->value, sizeof at->node->value);
 }
 
-void eval_palette(const field *node, const field_context *context, float3 p, const float (*args)[4],
-                  float out[4]) {
-    (void)p;
-    palette_eval(node->object, context->time, args[0][0], out);
+void eval_palette(const field_point *at, const float (*args)[4], float out[4]) {
+    palette_eval(at->node->object, at->context->time, args[0][0], out);
 }
 
-void eval_swizzle(const field *node, const field_context *context, float3 p, const float (*args)[4],
-                  float out[4]) {
-    (void)context, (void)p;
-    for (int i = 0; i < node->components; i++) out[i] = args[0][node->index >> 2 * i & 3];
+void eval_swizzle(const field_point *at, const float (*args)[4], float out[4]) {
+    for (int i = 0; i < at->node->components; i++) out[i] = args[0][at->node->index >> 2 * i & 3];
 }
 
-void eval_position(const field *node, const field_context *context, float3 p,
-                   const float (*args)[4], float out[4]) {
-    (void)node, (void)context, (void)args;
-    out[0] = p.x;
-    out[1] = p.y;
-    out[2] = p.z;
+void eval_position(const field_point *at, const float (*args)[4], float out[4]) {
+    (void)args;
+    out[0] = at->p.x;
+    out[1] = at->p.y;
+    out[2] = at->p.z;
 }
 
-void eval_zero(const field *node, const field_context *context, float3 p, const float (*args)[4],
-               float out[4]) {
-    (void)node, (void)context, (void)p, (void)args;
+void eval_zero(const field_point *at, const float (*args)[4], float out[4]) {
+    (void)at, (void)args;
     memset(out, 0, 4 * sizeof *out);
 }
 
 // ---- of an instance: zero where there is none ---------------------------------------------------
 
-void eval_instance_state(const field *node, const field_context *context, float3 p,
-                         const float (*args)[4], float out[4]) {
-    eval_zero(node, context, p, args, out);
-    if (context->instance) memcpy(out, context->instance->state.v, 4 * sizeof *out);
+void eval_instance_state(const field_point *at, const float (*args)[4], float out[4]) {
+    eval_zero(at, args, out);
+    if (at->context->instance) memcpy(out, at->context->instance->state.v, 4 * sizeof *out);
 }
 
-void eval_instance_random(const field *node, const field_context *context, float3 p,
-                          const float (*args)[4], float out[4]) {
-    eval_zero(node, context, p, args, out);
-    if (context->instance) memcpy(out, &context->instance->kind.v[2], sizeof *out);
+void eval_instance_random(const field_point *at, const float (*args)[4], float out[4]) {
+    eval_zero(at, args, out);
+    if (at->context->instance) memcpy(out, &at->context->instance->kind.v[2], sizeof *out);
 }
 
-void eval_instance_index(const field *node, const field_context *context, float3 p,
-                         const float (*args)[4], float out[4]) {
-    eval_zero(node, context, p, args, out);
-    if (context->instance) out[0] = (float)context->instance->kind.v[1];
+void eval_instance_index(const field_point *at, const float (*args)[4], float out[4]) {
+    eval_zero(at, args, out);
+    if (at->context->instance) out[0] = (float)at->context->instance->kind.v[1];
 }
 
-void eval_instance_glow(const field *node, const field_context *context, float3 p,
-                        const float (*args)[4], float out[4]) {
-    eval_zero(node, context, p, args, out);
-    if (context->instance) out[0] = context->instance->color.v[3];
+void eval_instance_glow(const field_point *at, const float (*args)[4], float out[4]) {
+    eval_zero(at, args, out);
+    if (at->context->instance) out[0] = at->context->instance->color.v[3];
 }
 
-void eval_length(const field *node, const field_context *context, float3 p, const float (*args)[4],
-                 float out[4]) {
-    (void)context, (void)p;
+void eval_length(const field_point *at, const float (*args)[4], float out[4]) {
     float square = 0;
-    for (int i = 0; i < kind_arg_width(node, 0); i++) square += A * A;
+    for (int i = 0; i < kind_arg_width(at->node, 0); i++) square += A * A;
     out[0] = sqrtf(square);
 }
 
-void eval_dot(const field *node, const field_context *context, float3 p, const float (*args)[4],
-              float out[4]) {
-    (void)context, (void)p;
+void eval_dot(const field_point *at, const float (*args)[4], float out[4]) {
     out[0] = 0;
-    for (int i = 0; i < kind_arg_width(node, 0); i++) out[0] += A * B;
+    for (int i = 0; i < kind_arg_width(at->node, 0); i++) out[0] += A * B;
 }
 
-void eval_atan(const field *node, const field_context *context, float3 p, const float (*args)[4],
-               float out[4]) {
-    (void)node, (void)context, (void)p;
+void eval_atan(const field_point *at, const float (*args)[4], float out[4]) {
+    (void)at;
     out[0] = args[0][0] == 0 && args[1][0] == 0 ? 0 : atan2f(args[0][0], args[1][0]);
 }
 
-void eval_vec(const field *node, const field_context *context, float3 p, const float (*args)[4],
-              float out[4]) {
-    (void)node, (void)context, (void)p;
+void eval_vec(const field_point *at, const float (*args)[4], float out[4]) {
+    (void)at;
     for (int i = 0; i < 3; i++) out[i] = args[i][0];
 }
 

@@ -11,25 +11,21 @@ static float length3(float x, float y, float z) {
     return sqrtf(x * x + y * y + z * z);
 }
 
-void eval_sphere(const field *node, const field_context *context, float3 p, const float (*a)[4],
-                 float out[4]) {
-    (void)node, (void)context;
-    out[0] = density(length3(p.x - a[0][0], p.y - a[0][1], p.z - a[0][2]) - a[1][0], a[2][0]);
+void eval_sphere(const field_point *at, const float (*a)[4], float out[4]) {
+    out[0] = density(length3(at->p.x - a[0][0], at->p.y - a[0][1], at->p.z - a[0][2]) - a[1][0],
+                     a[2][0]);
 }
 
-void eval_box(const field *node, const field_context *context, float3 p, const float (*a)[4],
-              float out[4]) {
-    (void)node, (void)context;
-    float x = fabsf(p.x - a[0][0]) - 0.5f * a[1][0], y = fabsf(p.y - a[0][1]) - 0.5f * a[1][1];
-    float z = fabsf(p.z - a[0][2]) - 0.5f * a[1][2];
+void eval_box(const field_point *at, const float (*a)[4], float out[4]) {
+    float x = fabsf(at->p.x - a[0][0]) - 0.5f * a[1][0],
+          y = fabsf(at->p.y - a[0][1]) - 0.5f * a[1][1];
+    float z = fabsf(at->p.z - a[0][2]) - 0.5f * a[1][2];
     float outside = length3(fmaxf(x, 0), fmaxf(y, 0), fmaxf(z, 0));
     out[0] = density(outside + fminf(fmaxf(x, fmaxf(y, z)), 0), a[2][0]);
 }
 
-void eval_capsule(const field *node, const field_context *context, float3 p, const float (*a)[4],
-                  float out[4]) {
-    (void)node, (void)context;
-    float r[3] = {p.x - a[0][0], p.y - a[0][1], p.z - a[0][2]};
+void eval_capsule(const field_point *at, const float (*a)[4], float out[4]) {
+    float r[3] = {at->p.x - a[0][0], at->p.y - a[0][1], at->p.z - a[0][2]};
     float b[3] = {a[1][0] - a[0][0], a[1][1] - a[0][1], a[1][2] - a[0][2]};
     float square = b[0] * b[0] + b[1] * b[1] + b[2] * b[2];
     float t = (r[0] * b[0] + r[1] * b[1] + r[2] * b[2]) / fmaxf(square, 1e-12f);
@@ -38,18 +34,14 @@ void eval_capsule(const field *node, const field_context *context, float3 p, con
     out[0] = density(distance - a[2][0], a[3][0]);
 }
 
-void eval_torus(const field *node, const field_context *context, float3 p, const float (*a)[4],
-                float out[4]) {
-    (void)node, (void)context;
-    float x = p.x - a[0][0], y = p.y - a[0][1], z = p.z - a[0][2];
+void eval_torus(const field_point *at, const float (*a)[4], float out[4]) {
+    float x = at->p.x - a[0][0], y = at->p.y - a[0][1], z = at->p.z - a[0][2];
     float ring = length3(x, y, 0) - a[1][0];
     out[0] = density(length3(ring, z, 0) - a[2][0], a[3][0]);
 }
 
-void eval_disc(const field *node, const field_context *context, float3 p, const float (*a)[4],
-               float out[4]) {
-    (void)node, (void)context;
-    out[0] = density(length3(p.x - a[0][0], p.y - a[1][0], 0) - a[2][0], a[3][0]);
+void eval_disc(const field_point *at, const float (*a)[4], float out[4]) {
+    out[0] = density(length3(at->p.x - a[0][0], at->p.y - a[1][0], 0) - a[2][0], a[3][0]);
 }
 
 static box3 around(const float centre[4], float x, float y, float z) {

@@ -8,9 +8,7 @@
 #include "base/hash.h"
 #include "base/memory.h"
 #include "field/program_parts.h"
-#include <assert.h>
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 // ---- interning --------------------------------------------------------------------------------
@@ -372,8 +370,8 @@ static bool fill_values(const field_program *p, const field_context *context) {
                 args[k][c] = args[k][0];
         }
         memset(p->values[i], 0, sizeof p->values[i]);
-        n->node->kind->eval(n->node, context, (float3){0, 0, 0}, (const float(*)[4])args,
-                            p->values[i]);
+        n->node->kind->eval(&(field_point){.node = n->node, .context = context},
+                            (const float(*)[4])args, p->values[i]);
     }
     return true;
 }

@@ -125,7 +125,7 @@ static bool find_now(walk *w, const field *node, const intervals *at, uint32_t b
         return find(w, node->args[0], &moved, ++w->boxes, out);
     default:
         if (!find_args(w, node, at, box, 0, args)) return false;
-        *out = node->kind->ranges(node, w->context, at, args);
+        *out = node->kind->ranges(&(field_box){node, w->context, at}, args);
         return true;
     }
 }

@@ -12,10 +12,8 @@ typedef struct intervals { // of a value, as many as it has components; of a poi
     interval c[4];
 } intervals;
 
-// Of what a kind makes of arguments in these ranges (widened as kind_arg_width says), at points in
-// the box `at`.
-typedef intervals kind_ranges(const field *node, const field_context *context, const intervals *at,
-                              const intervals *args);
+// Of what a kind makes of arguments in these ranges (widened as kind_arg_width says).
+typedef intervals kind_ranges(const field_box *in, const intervals *args);
 
 // Of every component in a box, which may be infinite. False when a Lua function failed.
 bool field_ranges(const field *node, const field_context *context, box3 box, intervals *out);

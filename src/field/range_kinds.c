@@ -1,7 +1,6 @@
 // Ranges of kinds: the twin of shaders/lib/range_operator.glsl, range_shape.glsl,
 // range_blast.glsl and, by noise_range.c, of range_noise.glsl. The reasons are given there.
 #include "field/kinds.h"
-#include "field/noise.h"
 #include <math.h>
 
 static const float most = 1e15f, end = 1e30f, rounding = 1e-6f;
@@ -13,9 +12,8 @@ static bool is_zero(interval a) {
 // ---- operators --------------------------------------------------------------------------------
 
 #define EACH(NAME, EXPRESSION)                                                                     \
-    intervals ranges_##NAME(const field *node, const field_context *context, const intervals *at,  \
-                            const intervals *args) {                                               \
-        (void)node, (void)context, (void)at;                                                       \
+    intervals ranges_##NAME(const field_box *in, const intervals *args) {                          \
+        (void)in;                                                                                  \
         intervals out;                                                                             \
         for (int i = 0; i < 4; i++) out.c[i] = EXPRESSION;                                         \
         return out;                                                                                \
@@ -156,16 +154,12 @@ static interval length(const intervals *a, int width) {
     return width == 1 ? b.c[0] : root(dot(&b, &b, width));
 }
 
-intervals ranges_dot(const field *node, const field_context *context, const intervals *at,
-                     const intervals *args) {
-    (void)context, (void)at;
-    return alone(dot(&args[0], &args[1], kind_arg_width(node, 0)));
+intervals ranges_dot(const field_box *in, const intervals *args) {
+    return alone(dot(&args[0], &args[1], kind_arg_width(in->node, 0)));
 }
 
-intervals ranges_length(const field *node, const field_context *context, const intervals *at,
-                        const intervals *args) {
-    (void)context, (void)at;
-    return alone(length(&args[0], kind_arg_width(node, 0)));
+intervals ranges_length(const field_box *in, const intervals *args) {
+    return alone(length(&args[0], kind_arg_width(in->node, 0)));
 }
 
 static intervals all_in(float low, float high) {
@@ -174,77 +168,68 @@ static intervals all_in(float low, float high) {
     return out;
 }
 
-intervals ranges_atan(const field *node, const field_context *context, const intervals *at,
-                      const intervals *args) {
-    (void)node, (void)context, (void)at, (void)args;
+intervals ranges_atan(const field_box *in, const intervals *args) {
+    (void)in, (void)args;
     return all_in(-3.1416f, 3.1416f);
 }
 
-intervals ranges_share(const field *node, const field_context *context, const intervals *at,
-                       const intervals *args) {
-    (void)node, (void)context, (void)at, (void)args;
+intervals ranges_share(const field_box *in, const intervals *args) {
+    (void)in, (void)args;
     return all_in(0, 1);
 }
 
-intervals ranges_way(const field *node, const field_context *context, const intervals *at,
-                     const intervals *args) {
-    (void)node, (void)context, (void)at, (void)args;
+intervals ranges_way(const field_box *in, const intervals *args) {
+    (void)in, (void)args;
     return all_in(-1, 1);
 }
 
-intervals ranges_vec(const field *node, const field_context *context, const intervals *at,
-                     const intervals *args) {
-    (void)node, (void)context, (void)at;
+intervals ranges_vec(const field_box *in, const intervals *args) {
+    (void)in;
     return (intervals){{args[0].c[0], args[1].c[0], args[2].c[0]}};
 }
 
-intervals ranges_swizzle(const field *node, const field_context *context, const intervals *at,
-                         const intervals *args) {
-    (void)context, (void)at;
+intervals ranges_swizzle(const field_box *in, const intervals *args) {
     intervals out = {0};
-    for (int i = 0; i < node->components; i++) out.c[i] = args[0].c[node->index >> 2 * i & 3];
+    for (int i = 0; i < in->node->components; i++)
+        out.c[i] = args[0].c[in->node->index >> 2 * i & 3];
     return out;
 }
 
-intervals ranges_position(const field *node, const field_context *context, const intervals *at,
-                          const intervals *args) {
-    (void)node, (void)context, (void)args;
-    return *at;
+intervals ranges_position(const field_box *in, const intervals *args) {
+    (void)args;
+    return *in->at;
 }
 
 // ---- sources ----------------------------------------------------------------------------------
 
 // Nothing outside of the grid's box; within, its values are on the device.
-intervals ranges_grid(const field *node, const field_context *context, const intervals *at,
-                      const intervals *args) {
+intervals ranges_grid(const field_box *in, const intervals *args) {
     (void)args;
-    const field_grid *grid = node->object;
-    box3 box = {{at->c[0].low, at->c[1].low, at->c[2].low},
-                {at->c[0].high, at->c[1].high, at->c[2].high}};
-    bool unread = context->unread > 0;
+    const field_grid *grid = in->node->object;
+    box3 box = {{in->at->c[0].low, in->at->c[1].low, in->at->c[2].low},
+                {in->at->c[0].high, in->at->c[1].high, in->at->c[2].high}};
+    bool unread = in->context->unread > 0;
     box3 active = unread ? grid->box : box3_intersect(grid->box, grid->state.active);
     bool inside = grid->repeats || !(box.min.x > active.max.x || box.max.x < active.min.x ||
                                      box.min.y > active.max.y || box.max.y < active.min.y ||
                                      box.min.z > active.max.z || box.max.z < active.min.z);
     intervals out = {0};
-    float size = grid->longest > 0 ? grid->longest : context->unread;
+    float size = grid->longest > 0 ? grid->longest : in->context->unread;
     interval values = size > 0 ? (interval){-size, size} : range_unknown();
     for (int i = 0; inside && i < 4; i++) out.c[i] = values;
     return out;
 }
 
-intervals ranges_palette(const field *node, const field_context *context, const intervals *at,
-                         const intervals *args) {
-    (void)at;
+intervals ranges_palette(const field_box *in, const intervals *args) {
     float low, high;
-    palette_range(node->object, &low, &high);
+    palette_range(in->node->object, &low, &high);
     float from = clampf((args[0].c[0].low - low) / (high - low), 0, 1) * PALETTE_SIZE - 0.51f;
     float to = clampf((args[0].c[0].high - low) / (high - low), 0, 1) * PALETTE_SIZE + 0.51f;
     intervals out;
     for (int i = 0; i < 4; i++) out.c[i] = (interval){end, -end};
     for (float i = floorf(from); i <= floorf(to); i++) {
         float at_texel = low + (i + 0.5f) / PALETTE_SIZE * (high - low), texel[4];
-        palette_eval(node->object, context->time, at_texel, texel);
+        palette_eval(in->node->object, in->context->time, at_texel, texel);
         for (int c = 0; c < 4; c++)
             out.c[c] =
                 range_union(out.c[c], (interval){texel[c] * (1 - 1e-3f), texel[c] * (1 + 1e-3f)});
@@ -252,9 +237,8 @@ intervals ranges_palette(const field *node, const field_context *context, const 
     return out;
 }
 
-intervals ranges_unknown(const field *node, const field_context *context, const intervals *at,
-                         const intervals *args) {
-    (void)node, (void)context, (void)at, (void)args;
+intervals ranges_unknown(const field_box *in, const intervals *args) {
+    (void)in, (void)args;
     intervals out;
     for (int i = 0; i < 4; i++) out.c[i] = range_unknown();
     return out;
@@ -277,10 +261,8 @@ static intervals difference(const intervals *a, const intervals *b) {
     return out;
 }
 
-intervals ranges_sphere(const field *node, const field_context *context, const intervals *at,
-                        const intervals *args) {
-    (void)node, (void)context;
-    intervals q = difference(at, &args[0]);
+intervals ranges_sphere(const field_box *in, const intervals *args) {
+    intervals q = difference(in->at, &args[0]);
     return densities(range_sub(length(&q, 3), args[1].c[0]), args[2].c[0]);
 }
 
@@ -290,10 +272,8 @@ static float box_distance(const float q[3]) {
     return sqrtf(square) + fminf(fmaxf(q[0], fmaxf(q[1], q[2])), 0);
 }
 
-intervals ranges_box(const field *node, const field_context *context, const intervals *at,
-                     const intervals *args) {
-    (void)node, (void)context;
-    intervals q = difference(at, &args[0]);
+intervals ranges_box(const field_box *in, const intervals *args) {
+    intervals q = difference(in->at, &args[0]);
     float low[3], high[3];
     for (int i = 0; i < 3; i++) {
         interval side =
@@ -321,14 +301,12 @@ static float length3(const float v[3]) {
     return sqrtf(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
-intervals ranges_capsule(const field *node, const field_context *context, const intervals *at,
-                         const intervals *args) {
-    (void)node, (void)context;
-    float reach = half_diagonal(at) + fmaxf(half_diagonal(&args[0]), half_diagonal(&args[1]));
+intervals ranges_capsule(const field_box *in, const intervals *args) {
+    float reach = half_diagonal(in->at) + fmaxf(half_diagonal(&args[0]), half_diagonal(&args[1]));
     float p[3], a[3], b[3], line[3], along = 0, square = 0;
     if (!(reach < 1e6f)) return alone((interval){0, 1});
     for (int i = 0; i < 3; i++) {
-        p[i] = middle(at->c[i]);
+        p[i] = middle(in->at->c[i]);
         a[i] = middle(args[0].c[i]);
         b[i] = middle(args[1].c[i]);
         line[i] = b[i] - a[i];
@@ -343,18 +321,14 @@ intervals ranges_capsule(const field *node, const field_context *context, const 
                      args[3].c[0]);
 }
 
-intervals ranges_torus(const field *node, const field_context *context, const intervals *at,
-                       const intervals *args) {
-    (void)node, (void)context;
-    intervals q = difference(at, &args[0]), flat = {{q.c[0], q.c[1]}};
+intervals ranges_torus(const field_box *in, const intervals *args) {
+    intervals q = difference(in->at, &args[0]), flat = {{q.c[0], q.c[1]}};
     intervals tube = {{range_sub(length(&flat, 3), args[1].c[0]), q.c[2]}};
     return densities(range_sub(length(&tube, 3), args[2].c[0]), args[3].c[0]);
 }
 
-intervals ranges_disc(const field *node, const field_context *context, const intervals *at,
-                      const intervals *args) {
-    (void)node, (void)context;
-    intervals q = {{range_sub(at->c[0], args[0].c[0]), range_sub(at->c[1], args[1].c[0])}};
+intervals ranges_disc(const field_box *in, const intervals *args) {
+    intervals q = {{range_sub(in->at->c[0], args[0].c[0]), range_sub(in->at->c[1], args[1].c[0])}};
     return densities(range_sub(length(&q, 3), args[2].c[0]), args[3].c[0]);
 }
 
@@ -370,34 +344,27 @@ static float greatest_peak(const intervals *at, const intervals *args) {
     return blast_excess(near) * (1 + inexact);
 }
 
-intervals ranges_blast_pressure(const field *node, const field_context *context,
-                                const intervals *at, const intervals *args) {
-    (void)node, (void)context;
-    const float ambient = 101325, suction = 0.1353353f, peak = ambient * greatest_peak(at, args);
+intervals ranges_blast_pressure(const field_box *in, const intervals *args) {
+    const float ambient = 101325, suction = 0.1353353f,
+                peak = ambient * greatest_peak(in->at, args);
     return alone(peak < 0 ? (interval){0, 0} : range_make(-suction * peak, peak));
 }
 
-intervals ranges_blast_velocity(const field *node, const field_context *context,
-                                const intervals *at, const intervals *args) {
-    (void)node, (void)context;
-    const float peak = greatest_peak(at, args), fast = peak < 0 ? 0 : blast_speed(peak);
+intervals ranges_blast_velocity(const field_box *in, const intervals *args) {
+    const float peak = greatest_peak(in->at, args), fast = peak < 0 ? 0 : blast_speed(peak);
     return all_in(-fast, fast);
 }
 
-intervals ranges_blast_impulse(const field *node, const field_context *context, const intervals *at,
-                               const intervals *args) {
-    (void)node, (void)context;
-    intervals q = difference(at, &args[0]);
+intervals ranges_blast_impulse(const field_box *in, const intervals *args) {
+    intervals q = difference(in->at, &args[0]);
     const interval away = length(&q, 3), charge = args[1].c[0];
     const float large = blast_scale(fminf(charge.high, most)), small = blast_scale(charge.low);
     return alone(range_make(small * blast_impulse(away.high / small) * (1 - inexact),
                             large * blast_impulse(away.low / large) * (1 + inexact)));
 }
 
-intervals ranges_blast_arrival(const field *node, const field_context *context, const intervals *at,
-                               const intervals *args) {
-    (void)node, (void)context;
-    intervals q = difference(at, &args[0]);
+intervals ranges_blast_arrival(const field_box *in, const intervals *args) {
+    intervals q = difference(in->at, &args[0]);
     const interval away = length(&q, 3), charge = args[1].c[0];
     const float large = blast_scale(fminf(charge.high, most)), small = blast_scale(charge.low);
     return alone(range_make(

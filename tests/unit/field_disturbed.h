@@ -64,7 +64,7 @@ static inline bool disturbed_now(disturbed *d, const field *node, float3 p, uint
         for (int c = 1; arg->components == 1 && c < 4; c++) args[i][c] = args[i][0];
     }
     if (moves) return disturbed_moved(d, node, p, (const float(*)[4])args, out);
-    node->kind->eval(node, d->context, p, (const float(*)[4])args, out);
+    node->kind->eval(&(field_point){node, d->context, p}, (const float(*)[4])args, out);
     for (int c = 0; kind == KIND_PALETTE && c < 4; c++)
         out[c] *= 1 + d->scale * (2 * random_float(&d->seed) - 1) * DISTURBED_COLOR;
     return true;
