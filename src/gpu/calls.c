@@ -7,46 +7,34 @@
 VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL vkGetInstanceProcAddr(VkInstance instance,
                                                                const char *name);
 
-static bool is_there(PFN_vkVoidFunction found, const char *name) {
-    return found || err_set("Vulkan has no call %s; roil needs Vulkan 1.3", name);
-}
+// Missing ones stay NULL.
+#define FIND(get, object, name) vk->name = (PFN_vk##name)vk->get(object, "vk" #name)
+#define REQUIRE(get, object, name)                                                                 \
+    FIND(get, object, name);                                                                       \
+    if (!vk->name) return err_set("Vulkan has no call vk" #name "; roil needs Vulkan 1.3");
 
 bool vk_calls_find_global(vk_calls *vk, PFN_vkGetInstanceProcAddr get) {
-    PFN_vkVoidFunction found;
     vk->GetInstanceProcAddr = get ? get : vkGetInstanceProcAddr;
-#define FIND(name)                                                                                 \
-    found = vk->GetInstanceProcAddr(NULL, "vk" #name);                                             \
-    if (!is_there(found, "vk" #name)) return false;                                                \
-    vk->name = (PFN_vk##name)found;
-    VK_CALLS_GLOBAL(FIND)
-#undef FIND
+#define CALL(name) REQUIRE(GetInstanceProcAddr, NULL, name)
+    VK_CALLS_GLOBAL(CALL)
+#undef CALL
     return true;
 }
 
 bool vk_calls_find_instance(vk_calls *vk, VkInstance instance) {
-    PFN_vkVoidFunction found;
-#define FIND(name)                                                                                 \
-    found = vk->GetInstanceProcAddr(instance, "vk" #name);                                         \
-    if (!is_there(found, "vk" #name)) return false;                                                \
-    vk->name = (PFN_vk##name)found;
-    VK_CALLS_INSTANCE(FIND)
-#undef FIND
-#define FIND(name) vk->name = (PFN_vk##name)vk->GetInstanceProcAddr(instance, "vk" #name);
-    VK_CALLS_INSTANCE_OPTIONAL(FIND)
-#undef FIND
+#define CALL(name) REQUIRE(GetInstanceProcAddr, instance, name)
+#define OPTIONAL(name) FIND(GetInstanceProcAddr, instance, name);
+    VK_CALLS_INSTANCE(CALL)
+    VK_CALLS_INSTANCE_OPTIONAL(OPTIONAL)
+#undef CALL
+#undef OPTIONAL
     return true;
 }
 
 bool vk_calls_find_device(vk_calls *vk, VkDevice device) {
-    PFN_vkVoidFunction found;
-#define FIND(name)                                                                                 \
-    found = vk->GetDeviceProcAddr(device, "vk" #name);                                             \
-    if (!is_there(found, "vk" #name)) return false;                                                \
-    vk->name = (PFN_vk##name)found;
-    VK_CALLS_DEVICE(FIND)
-#undef FIND
-#define FIND(name) vk->name = (PFN_vk##name)vk->GetDeviceProcAddr(device, "vk" #name);
-    VK_CALLS_DEVICE_OPTIONAL(FIND)
-#undef FIND
+#define CALL(name) REQUIRE(GetDeviceProcAddr, device, name)
+#define OPTIONAL(name) FIND(GetDeviceProcAddr, device, name);
+    VK_CALLS_DEVICE(CALL)
+    VK_CALLS_DEVICE_OPTIONAL(OPTIONAL)
     return true;
 }

@@ -5,20 +5,24 @@
 #include "gpu/vk.h"
 #include <string.h>
 
-bool vk_batch_create(gpu *g, vk_batch *out) {
-    VkCommandPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
+bool vk_commands_create(gpu *g, uint32_t family, VkCommandPool *pool, VkCommandBuffer *commands) {
+    VkCommandPoolCreateInfo info = {.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
                                     .flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT,
-                                    .queueFamilyIndex = g->family};
-    if (!vk_check(g, g->vk.CreateCommandPool(g->device, &pool, NULL, &out->pool),
+                                    .queueFamilyIndex = family};
+    if (!vk_check(g, g->vk.CreateCommandPool(g->device, &info, NULL, pool),
                   "creating a command pool")) {
         return false;
     }
-    VkCommandBufferAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
-                                        .commandPool = out->pool,
-                                        .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
-                                        .commandBufferCount = 1};
-    return vk_check(g, g->vk.AllocateCommandBuffers(g->device, &info, &out->commands),
+    VkCommandBufferAllocateInfo buffer = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
+                                          .commandPool = *pool,
+                                          .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
+                                          .commandBufferCount = 1};
+    return vk_check(g, g->vk.AllocateCommandBuffers(g->device, &buffer, commands),
                     "creating a command buffer");
+}
+
+bool vk_batch_create(gpu *g, vk_batch *out) {
+    return vk_commands_create(g, g->family, &out->pool, &out->commands);
 }
 
 void vk_batch_destroy(gpu *g, vk_batch *batch) {

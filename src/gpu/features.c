@@ -84,6 +84,32 @@ const char *vk_features_missing(const vk_features *there, const vk_features *ena
     return NULL;
 }
 
+// Features that came to the core from extensions, whose structs a host may have chained instead.
+#define ALONE(type, TYPE, part, name)                                                              \
+    {                                                                                              \
+        VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_##TYPE##_FEATURES,                                       \
+            offsetof(VkPhysicalDevice##type##Features, name), offsetof(vk_features, part.name)     \
+    }
+static const struct {
+    VkStructureType type;
+    size_t from, to; // of a VkBool32
+} alone[] = {
+    ALONE(DynamicRendering, DYNAMIC_RENDERING, v13, dynamicRendering),
+    ALONE(Synchronization2, SYNCHRONIZATION_2, v13, synchronization2),
+    ALONE(Maintenance4, MAINTENANCE_4, v13, maintenance4),
+    ALONE(ImageRobustness, IMAGE_ROBUSTNESS, v13, robustImageAccess),
+    ALONE(TimelineSemaphore, TIMELINE_SEMAPHORE, v12, timelineSemaphore),
+    ALONE(ScalarBlockLayout, SCALAR_BLOCK_LAYOUT, v12, scalarBlockLayout),
+    ALONE(16BitStorage, 16BIT_STORAGE, v11, storageBuffer16BitAccess),
+    ALONE(16BitStorage, 16BIT_STORAGE, v11, uniformAndStorageBuffer16BitAccess),
+};
+
+static void read_alone(const VkBaseInStructure *from, vk_features *out) {
+    for (size_t i = 0; i < COUNT_OF(alone); i++)
+        if (from->sType == alone[i].type)
+            memcpy((char *)out + alone[i].to, (const char *)from + alone[i].from, sizeof(VkBool32));
+}
+
 // What a host enabled, in the structs of core versions or in those of the features alone.
 void vk_features_of_host(const void *chain, vk_features *out) {
     memset(out, 0, sizeof *out);
@@ -102,37 +128,8 @@ void vk_features_of_host(const void *chain, vk_features *out) {
         case VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES:
             out->v13 = *(const VkPhysicalDeviceVulkan13Features *)at;
             break;
-        case VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DYNAMIC_RENDERING_FEATURES:
-            out->v13.dynamicRendering =
-                ((const VkPhysicalDeviceDynamicRenderingFeatures *)at)->dynamicRendering;
-            break;
-        case VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SYNCHRONIZATION_2_FEATURES:
-            out->v13.synchronization2 =
-                ((const VkPhysicalDeviceSynchronization2Features *)at)->synchronization2;
-            break;
-        case VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_4_FEATURES:
-            out->v13.maintenance4 =
-                ((const VkPhysicalDeviceMaintenance4Features *)at)->maintenance4;
-            break;
-        case VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_IMAGE_ROBUSTNESS_FEATURES:
-            out->v13.robustImageAccess =
-                ((const VkPhysicalDeviceImageRobustnessFeatures *)at)->robustImageAccess;
-            break;
-        case VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_TIMELINE_SEMAPHORE_FEATURES:
-            out->v12.timelineSemaphore =
-                ((const VkPhysicalDeviceTimelineSemaphoreFeatures *)at)->timelineSemaphore;
-            break;
-        case VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SCALAR_BLOCK_LAYOUT_FEATURES:
-            out->v12.scalarBlockLayout =
-                ((const VkPhysicalDeviceScalarBlockLayoutFeatures *)at)->scalarBlockLayout;
-            break;
-        case VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_16BIT_STORAGE_FEATURES: {
-            const VkPhysicalDevice16BitStorageFeatures *f = (const void *)at;
-            out->v11.storageBuffer16BitAccess = f->storageBuffer16BitAccess;
-            out->v11.uniformAndStorageBuffer16BitAccess = f->uniformAndStorageBuffer16BitAccess;
-            break;
-        }
         default:
+            read_alone(at, out);
             break;
         }
     }

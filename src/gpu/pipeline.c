@@ -155,6 +155,30 @@ static bool create_rewritten_module(gpu *g, const char *label, const uint32_t *c
     return created;
 }
 
+// Gives the pipeline what the driver makes of it: what there is of an equal description, or what
+// `build` makes of `desc`. `shaders`: the hash of all that the pipeline does not hold. NULL with a
+// message: it could not be built, and the pipeline is gone.
+static gpu_pipeline *complete(gpu *g, gpu_pipeline *pipeline, hash128 shaders,
+                              bool (*build)(gpu *g, const gpu_pipeline *pipeline, const void *desc,
+                                            vk_built *out),
+                              const void *desc) {
+    hash128 key = hash_combine(shaders, hash_interface(pipeline));
+    vk_built *built = vk_built_find(g, key);
+    if (!built) {
+        built = mem_alloc(sizeof *built);
+        built->key = key;
+        if (!build(g, pipeline, desc, built)) {
+            vk_built_free(g, built);
+            pipeline_free(pipeline);
+            return NULL;
+        }
+        vk_name(g, VK_OBJECT_TYPE_PIPELINE, VK_HANDLE(built->handle), pipeline->label);
+        built = vk_built_add(g, built);
+    }
+    pipeline->built = built;
+    return pipeline;
+}
+
 // ---- compute ----------------------------------------------------------------------------------
 
 static bool check_local_size(gpu *g, const char *label, const uint32_t size[3]) {
@@ -191,8 +215,8 @@ static bool counts_groups(const uint32_t *code, size_t size) {
     return false;
 }
 
-static bool build_compute(gpu *g, const gpu_pipeline *pipeline, const gpu_compute_desc *desc,
-                          vk_built *out) {
+static bool build_compute(gpu *g, const gpu_pipeline *pipeline, const void *from, vk_built *out) {
+    const gpu_compute_desc *desc = from;
     VkShaderModule module;
     out->sliced = g->profile.slices_dispatches && !counts_groups(desc->code, desc->code_size);
     if (!check_shared_memory(g, pipeline->label, desc->code, desc->code_size)) return false;
@@ -213,21 +237,6 @@ static bool build_compute(gpu *g, const gpu_pipeline *pipeline, const gpu_comput
     return vk_check(g, result, "creating pipeline '%s'", pipeline->label);
 }
 
-static vk_built *obtain_compute(gpu *g, const gpu_pipeline *pipeline,
-                                const gpu_compute_desc *desc) {
-    hash128 key = hash_combine(hash_bytes(desc->code, desc->code_size), hash_interface(pipeline));
-    vk_built *built = vk_built_find(g, key);
-    if (built) return built;
-    built = mem_alloc(sizeof *built);
-    built->key = key;
-    if (!build_compute(g, pipeline, desc, built)) {
-        vk_built_free(g, built);
-        return NULL;
-    }
-    vk_name(g, VK_OBJECT_TYPE_PIPELINE, VK_HANDLE(built->handle), pipeline->label);
-    return vk_built_add(g, built);
-}
-
 gpu_pipeline *gpu_pipeline_create_compute(gpu *g, const gpu_compute_desc *desc) {
     const char *label = desc->label ? desc->label : "compute";
     if (!vk_alive(g) || !check_slots(g, label, desc->slots, desc->slot_count) ||
@@ -238,10 +247,7 @@ gpu_pipeline *gpu_pipeline_create_compute(gpu *g, const gpu_compute_desc *desc) 
     gpu_pipeline *pipeline = pipeline_new(label, desc->slots, desc->slot_count);
     pipeline->bind_point = VK_PIPELINE_BIND_POINT_COMPUTE;
     memcpy(pipeline->local_size, desc->local_size, sizeof pipeline->local_size);
-    pipeline->built = obtain_compute(g, pipeline, desc);
-    if (pipeline->built) return pipeline;
-    pipeline_free(pipeline);
-    return NULL;
+    return complete(g, pipeline, hash_bytes(desc->code, desc->code_size), build_compute, desc);
 }
 
 // ---- graphics ---------------------------------------------------------------------------------
@@ -321,8 +327,8 @@ static VkResult create_graphics(gpu *g, const gpu_pipeline *pipeline, const gpu_
     return g->vk.CreateGraphicsPipelines(g->device, g->cache, 1, &info, NULL, &out->handle);
 }
 
-static bool build_graphics(gpu *g, const gpu_pipeline *pipeline, const gpu_graphics_desc *desc,
-                           vk_built *out) {
+static bool build_graphics(gpu *g, const gpu_pipeline *pipeline, const void *from, vk_built *out) {
+    const gpu_graphics_desc *desc = from;
     VkShaderStageFlags both = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
     VkPipelineShaderStageCreateInfo stages[2] = {
         {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
@@ -365,25 +371,6 @@ static bool check_targets(gpu *g, const char *label, const gpu_graphics_desc *de
     return true;
 }
 
-static vk_built *obtain_graphics(gpu *g, const gpu_pipeline *pipeline,
-                                 const gpu_graphics_desc *desc) {
-    const uint32_t raster[2] = {desc->cull, desc->blend};
-    hash128 key = hash_combine(hash_bytes(desc->vertex_code, desc->vertex_size),
-                               hash_bytes(desc->fragment_code, desc->fragment_size));
-    key = hash_combine(key, hash_bytes(raster, sizeof raster));
-    key = hash_combine(key, hash_interface(pipeline));
-    vk_built *built = vk_built_find(g, key);
-    if (built) return built;
-    built = mem_alloc(sizeof *built);
-    built->key = key;
-    if (!build_graphics(g, pipeline, desc, built)) {
-        vk_built_free(g, built);
-        return NULL;
-    }
-    vk_name(g, VK_OBJECT_TYPE_PIPELINE, VK_HANDLE(built->handle), pipeline->label);
-    return vk_built_add(g, built);
-}
-
 gpu_pipeline *gpu_pipeline_create_graphics(gpu *g, const gpu_graphics_desc *desc) {
     const char *label = desc->label ? desc->label : "graphics";
     if (!vk_alive(g) || !check_slots(g, label, desc->slots, desc->slot_count) ||
@@ -398,10 +385,11 @@ gpu_pipeline *gpu_pipeline_create_graphics(gpu *g, const gpu_graphics_desc *desc
     for (int i = 0; i < GPU_MAX_TARGETS && desc->colors[i]; i++) {
         pipeline->colors[pipeline->color_count++] = desc->colors[i];
     }
-    pipeline->built = obtain_graphics(g, pipeline, desc);
-    if (pipeline->built) return pipeline;
-    pipeline_free(pipeline);
-    return NULL;
+    const uint32_t raster[2] = {desc->cull, desc->blend};
+    hash128 key = hash_combine(hash_bytes(desc->vertex_code, desc->vertex_size),
+                               hash_bytes(desc->fragment_code, desc->fragment_size));
+    key = hash_combine(key, hash_bytes(raster, sizeof raster));
+    return complete(g, pipeline, key, build_graphics, desc);
 }
 
 void gpu_pipeline_destroy(gpu *g, gpu_pipeline *pipeline) {

@@ -74,27 +74,13 @@ static bool wait_copied(gpu *g, uint64_t serial) {
 
 // ---- life -------------------------------------------------------------------------------------
 
-static bool create_commands(gpu *g, gpu_transfer *t) {
-    VkCommandPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
-                                    .flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT,
-                                    .queueFamilyIndex = (uint32_t)g->copier.family};
-    if (!vk_check(g, g->vk.CreateCommandPool(g->device, &pool, NULL, &t->pool),
-                  "creating a command pool for copies")) {
-        return false;
-    }
-    VkCommandBufferAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
-                                        .commandPool = t->pool,
-                                        .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
-                                        .commandBufferCount = 1};
-    return vk_check(g, g->vk.AllocateCommandBuffers(g->device, &info, &t->commands),
-                    "creating a command buffer for copies");
-}
-
 gpu_transfer *gpu_transfer_create(gpu *g, uint64_t size) {
     gpu_transfer *t = mem_alloc(sizeof *t);
     t->buffer =
         vk_buffer_create(g, size, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, VK_MEMORY_UPLOAD, "transfer");
-    if (t->buffer && (g->copier.family < 0 || create_commands(g, t))) return t;
+    if (t->buffer && (g->copier.family < 0 ||
+                      vk_commands_create(g, (uint32_t)g->copier.family, &t->pool, &t->commands)))
+        return t;
     gpu_transfer_destroy(g, t);
     return NULL;
 }

@@ -237,6 +237,8 @@ typedef struct vk_batch {
     bool syncs;               // the next one waits for and signals what the host asked for
 } vk_batch;
 
+// A command buffer for queues of that family, and its pool.
+bool vk_commands_create(gpu *g, uint32_t family, VkCommandPool *pool, VkCommandBuffer *commands);
 bool vk_batch_create(gpu *g, vk_batch *out);
 void vk_batch_destroy(gpu *g, vk_batch *batch);
 bool vk_batch_begin(gpu *g, vk_batch *batch); // waits until it is free
