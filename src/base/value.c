@@ -1,6 +1,7 @@
 // Values: what is accepted, and how they are read and written as text.
 #include "base/value.h"
 #include "base/error.h"
+#include "base/srgb.h"
 #include <errno.h>
 #include <math.h>
 #include <stdarg.h>
@@ -168,10 +169,6 @@ static int digit(char c) {
     return -1;
 }
 
-static float linear_from_srgb(float v) {
-    return v <= 0.04045f ? v / 12.92f : powf((v + 0.055f) / 1.055f, 2.4f);
-}
-
 bool value_parse_color(const char *text, float out[4]) {
     size_t length = strlen(text);
     bool right = text[0] == '#' && (length == 4 || length == 7 || length == 9);
@@ -198,7 +195,7 @@ bool value_color_hex(const float linear[3], char out[8]) {
     for (int i = 0; i < 3; i++) {
         float v = linear[i];
         if (!(v >= 0 && v <= 1)) return false;
-        float encoded = v <= 0.0031308f ? 12.92f * v : 1.055f * powf(v, 1 / 2.4f) - 0.055f;
+        float encoded = srgb_from_linear(v);
         long byte = lrintf(encoded * 255);
         if (linear_from_srgb((float)byte / 255.0f) != v) return false;
         out[1 + 2 * i] = digits[byte >> 4];

@@ -5,6 +5,7 @@
 #include "base/file.h"
 #include "base/maths.h"
 #include "base/memory.h"
+#include "base/srgb.h"
 #include "base/str.h"
 #include "media/exr.h"
 #include "media/png.h"
@@ -13,12 +14,7 @@
 #include <string.h>
 
 static float encode_srgb(float v) {
-    v = clampf(v, 0, 1);
-    return v <= 0.0031308f ? v * 12.92f : 1.055f * powf(v, 1 / 2.4f) - 0.055f;
-}
-
-static float decode_srgb(float v) {
-    return v <= 0.04045f ? v / 12.92f : powf((v + 0.055f) / 1.055f, 2.4f);
+    return srgb_from_linear(clampf(v, 0, 1));
 }
 
 // ---- files ------------------------------------------------------------------------------------
@@ -36,7 +32,7 @@ static bool read_png(const char *path, arena *memory, compare_picture *out) {
                                         : (float)((const uint8_t *)image.pixels)[i * 4 + c] / 255;
         for (size_t c = 0; c < 3; c++)
             rgb[i * 3 + c] =
-                value[3] < 1 ? encode_srgb(decode_srgb(value[c]) * value[3]) : value[c];
+                value[3] < 1 ? encode_srgb(linear_from_srgb(value[c]) * value[3]) : value[c];
     }
     arena_free(&scratch);
     *out = (compare_picture){image.width, image.height, rgb};

@@ -4,6 +4,7 @@
 #include "base/file.h"
 #include "base/jobs.h"
 #include "base/memory.h"
+#include "base/srgb.h"
 #include "base/worker.h"
 #include "effect/recipe.h"
 #include "media/exr.h"
@@ -104,9 +105,8 @@ float *roil_read_linear(roil_effect *e, graph_image image, uint32_t *width, uint
 
 // ---- display encoding -------------------------------------------------------------------------
 
-float roil_srgb(float linear) {                 // IEC 61966-2-1
-    linear = linear > 0 ? fminf(linear, 1) : 0; // NaN becomes 0
-    return linear <= 0.0031308f ? 12.92f * linear : 1.055f * powf(linear, 1 / 2.4f) - 0.055f;
+float roil_srgb(float linear) {
+    return srgb_from_linear(linear > 0 ? fminf(linear, 1) : 0); // NaN becomes 0
 }
 
 // Linear values 0 to 1 are encoded by tables over the square root, which have most entries where

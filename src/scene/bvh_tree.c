@@ -2,6 +2,7 @@
 #include "scene/bvh_tree.h"
 #include "base/error.h"
 #include "base/memory.h"
+#include "base/srgb.h"
 #include <float.h>
 #include <math.h>
 
@@ -53,11 +54,8 @@ static void add_pieces(builder *b, uint32_t part, uint32_t level) {
 
 // Returns the mean of a texture, linear. Rays use no more of it than that.
 static void mean_color(const mesh_texture *texture, float out[3]) {
-    float linear[256]; // of sRGB: IEC 61966-2-1
-    for (int i = 0; i < 256; i++) {
-        float v = (float)i / 255;
-        linear[i] = v <= 0.04045f ? v / 12.92f : powf((v + 0.055f) / 1.055f, 2.4f);
-    }
+    float linear[256];
+    for (int i = 0; i < 256; i++) linear[i] = linear_from_srgb((float)i / 255);
     size_t count = (size_t)texture->width * texture->height;
     double sum[3] = {0};
     for (size_t i = 0; i < count; i++)

@@ -2,21 +2,17 @@
 // four are blended at a time, and decoding sRGB for each would cost more than their memory.
 #include "scene/surfaces.h"
 #include "base/memory.h"
+#include "base/srgb.h"
 #include <math.h>
 #include <string.h>
 
 _Static_assert(sizeof(struct surface_vertex) == sizeof(mesh_vertex), "copied as they are");
 
-static float linear_of(uint8_t byte) { // of sRGB: IEC 61966-2-1
-    float v = (float)byte / 255;
-    return v <= 0.04045f ? v / 12.92f : powf((v + 0.055f) / 1.055f, 2.4f);
-}
-
 static void add_texture(surfaces *s, const mesh_texture *texture) {
     size_t count = (size_t)texture->width * texture->height;
     uint16_t linear[256], alpha[256];
     for (int i = 0; i < 256; i++) {
-        linear[i] = half_from_float(linear_of((uint8_t)i));
+        linear[i] = half_from_float(linear_from_srgb((float)i / 255));
         alpha[i] = half_from_float((float)i / 255);
     }
     MEM_RESERVE(s->texels, s->texel_count + count, s->texel_capacity);

@@ -1,6 +1,7 @@
 // The popup that chooses a colour. The stored colour is linear and of any brightness; the user
 // edits a colour as displays show it (hue, saturation, value in sRGB) and an intensity.
 #include "base/maths.h"
+#include "base/srgb.h"
 #include "ui/parts.h"
 #include <math.h>
 #include <stdio.h>
@@ -15,14 +16,6 @@ static struct {
     float hsv[3]; // 0 to 1
     float intensity;
 } chosen = {.linear = {-1, -1, -1}};
-
-static float srgb_encode(float v) {
-    return v <= 0.0031308f ? v * 12.92f : 1.055f * powf(v, 1 / 2.4f) - 0.055f;
-}
-
-static float srgb_decode(float v) {
-    return v <= 0.04045f ? v / 12.92f : powf((v + 0.055f) / 1.055f, 2.4f);
-}
 
 static void rgb_from_hsv(const float hsv[3], float rgb[3]) {
     for (int i = 0; i < 3; i++) {
@@ -57,14 +50,14 @@ static void picker_choose(const float linear[3]) {
     memcpy(chosen.linear, linear, sizeof chosen.linear);
     chosen.intensity = intensity_of(linear);
     float rgb[3];
-    for (int i = 0; i < 3; i++) rgb[i] = srgb_encode(fmaxf(linear[i], 0) / chosen.intensity);
+    for (int i = 0; i < 3; i++) rgb[i] = srgb_from_linear(fmaxf(linear[i], 0) / chosen.intensity);
     hsv_from_rgb(rgb, chosen.hsv);
 }
 
 static void picker_give(float linear[3]) {
     float rgb[3];
     rgb_from_hsv(chosen.hsv, rgb);
-    for (int i = 0; i < 3; i++) linear[i] = srgb_decode(rgb[i]) * chosen.intensity;
+    for (int i = 0; i < 3; i++) linear[i] = linear_from_srgb(rgb[i]) * chosen.intensity;
     memcpy(chosen.linear, linear, sizeof chosen.linear);
 }
 
@@ -72,7 +65,7 @@ void color_text(const float linear[3], char *out, size_t capacity) {
     float intensity = intensity_of(linear);
     int rgb[3];
     for (int i = 0; i < 3; i++)
-        rgb[i] = (int)lroundf(srgb_encode(clampf(linear[i] / intensity, 0, 1)) * 255);
+        rgb[i] = (int)lroundf(srgb_from_linear(clampf(linear[i] / intensity, 0, 1)) * 255);
     int length = snprintf(out, capacity, "#%02x%02x%02x", (unsigned)rgb[0], (unsigned)rgb[1],
                           (unsigned)rgb[2]);
     if (intensity > 1.0001f && length > 0 && (size_t)length < capacity)
@@ -82,7 +75,7 @@ void color_text(const float linear[3], char *out, size_t capacity) {
 static uint32_t of_hsv(float hue, float saturation, float value) {
     float rgb[3], linear[3];
     rgb_from_hsv((float[3]){hue, saturation, value}, rgb);
-    for (int i = 0; i < 3; i++) linear[i] = srgb_decode(rgb[i]);
+    for (int i = 0; i < 3; i++) linear[i] = linear_from_srgb(rgb[i]);
     return ui_pack(linear, 1);
 }
 
@@ -146,7 +139,7 @@ static bool alpha_strip(float *alpha) {
     ui_canvas c = ui_canvas_begin("alpha", SIDE * ui_scale(), STRIP * ui_scale());
     float rgb[3], linear[3];
     rgb_from_hsv(chosen.hsv, rgb);
-    for (int i = 0; i < 3; i++) linear[i] = srgb_decode(rgb[i]);
+    for (int i = 0; i < 3; i++) linear[i] = linear_from_srgb(rgb[i]);
     ui_checkers(c.area, STRIP / 2 * ui_scale());
     ui_gradient(c.area, ui_pack(linear, 0), ui_pack(linear, 1));
     if (c.held) {
@@ -173,7 +166,8 @@ static bool hex_input(float *linear) {
     if (*digits == '#') digits++;
     if (!typed || strlen(digits) != 6 || sscanf(digits, "%2x%2x%2x", &r, &g, &b) != 3) return false;
     const unsigned parts[3] = {r, g, b};
-    for (int i = 0; i < 3; i++) linear[i] = srgb_decode((float)parts[i] / 255) * chosen.intensity;
+    for (int i = 0; i < 3; i++)
+        linear[i] = linear_from_srgb((float)parts[i] / 255) * chosen.intensity;
     memcpy(shown, linear, sizeof shown);
     return true;
 }

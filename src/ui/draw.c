@@ -1,4 +1,5 @@
 // The look of widgets: colours, fills and edges in one place.
+#include "base/srgb.h"
 #include "ui/parts.h"
 #include <math.h>
 
@@ -46,8 +47,7 @@ uint32_t ui_pack(const float linear[3], float alpha) {
     uint8_t encoded[3];
     for (int i = 0; i < 3; i++) {
         float v = fminf(fmaxf(linear[i], 0), 1);
-        v = v <= 0.0031308f ? v * 12.92f : 1.055f * powf(v, 1 / 2.4f) - 0.055f;
-        encoded[i] = (uint8_t)lroundf(v * 255);
+        encoded[i] = (uint8_t)lroundf(srgb_from_linear(v) * 255);
     }
     return packed((rgb){encoded[0], encoded[1], encoded[2]}, alpha);
 }

@@ -2,6 +2,7 @@
 #include "pass/picture/picture.h"
 #include "base/maths.h"
 #include "base/memory.h"
+#include "base/srgb.h"
 #include "media/picture.h"
 #include "pass/pass_impl.h"
 #include <math.h>
@@ -22,16 +23,12 @@ static bool picture_declare(pass *p) {
            pass_add_to_graph(p);
 }
 
-static float linear(float v) { // IEC 61966-2-1
-    return v <= 0.04045f ? v / 12.92f : powf((v + 0.055f) / 1.055f, 2.4f);
-}
-
 static void convert(const picture *from, uint16_t *out) {
     size_t count = (size_t)4 * from->width * from->height;
     for (size_t i = 0; i < count; i++) {
         bool encoded = from->bits > 0 && i % 4 < 3;
-        out[i] =
-            half_from_float(clampf(encoded ? linear(from->rgba[i]) : from->rgba[i], -65504, 65504));
+        out[i] = half_from_float(
+            clampf(encoded ? linear_from_srgb(from->rgba[i]) : from->rgba[i], -65504, 65504));
     }
 }
 
