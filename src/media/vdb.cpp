@@ -103,27 +103,9 @@ uint64_t clear_bad(float *values, size_t count) {
 
 bool sample_any(const GridBase &grid, vdb_value value, const affine &t, const vdb_sample_desc &d,
                 vdb_class cls) {
-    switch (value) {
-    case VDB_VALUE_FLOAT:
-        return sample<openvdb::FloatGrid>(grid, t, d, cls);
-    case VDB_VALUE_DOUBLE:
-        return sample<openvdb::DoubleGrid>(grid, t, d, cls);
-    case VDB_VALUE_INT32:
-        return sample<openvdb::Int32Grid>(grid, t, d, cls);
-    case VDB_VALUE_INT64:
-        return sample<openvdb::Int64Grid>(grid, t, d, cls);
-    case VDB_VALUE_BOOL:
-        return sample<openvdb::BoolGrid>(grid, t, d, cls);
-    case VDB_VALUE_VEC3S:
-        return sample<openvdb::Vec3SGrid>(grid, t, d, cls);
-    case VDB_VALUE_VEC3D:
-        return sample<openvdb::Vec3DGrid>(grid, t, d, cls);
-    case VDB_VALUE_VEC3I:
-        return sample<openvdb::Vec3IGrid>(grid, t, d, cls);
-    case VDB_VALUE_OTHER:
-        break;
-    }
-    return false;
+    return vdb::with_type(value, [&](auto *type) {
+        return sample<std::remove_pointer_t<decltype(type)>>(grid, t, d, cls);
+    });
 }
 
 bool size_is_fine(const vdb_sample_desc &desc) {

@@ -245,27 +245,9 @@ vdb_blocks *make(GridBase::Ptr grid, const affine &t, const vdb_sample_desc &des
 
 vdb_blocks *make_any(GridBase::Ptr grid, vdb_value value, const affine &t,
                      const vdb_sample_desc &desc, vdb_class cls) {
-    switch (value) {
-    case VDB_VALUE_FLOAT:
-        return make<openvdb::FloatGrid>(grid, t, desc, cls);
-    case VDB_VALUE_DOUBLE:
-        return make<openvdb::DoubleGrid>(grid, t, desc, cls);
-    case VDB_VALUE_INT32:
-        return make<openvdb::Int32Grid>(grid, t, desc, cls);
-    case VDB_VALUE_INT64:
-        return make<openvdb::Int64Grid>(grid, t, desc, cls);
-    case VDB_VALUE_BOOL:
-        return make<openvdb::BoolGrid>(grid, t, desc, cls);
-    case VDB_VALUE_VEC3S:
-        return make<openvdb::Vec3SGrid>(grid, t, desc, cls);
-    case VDB_VALUE_VEC3D:
-        return make<openvdb::Vec3DGrid>(grid, t, desc, cls);
-    case VDB_VALUE_VEC3I:
-        return make<openvdb::Vec3IGrid>(grid, t, desc, cls);
-    case VDB_VALUE_OTHER:
-        break;
-    }
-    return nullptr;
+    return vdb::with_type(value, [&](auto *type) {
+        return make<std::remove_pointer_t<decltype(type)>>(grid, t, desc, cls);
+    });
 }
 
 } // namespace

@@ -305,6 +305,32 @@ inline bool can_sample(const vdb_layout_grid &g, const vdb_sample_desc &desc) {
     return true;
 }
 
+// Calls `f` with a null pointer to the type of grids of these values; else returns a zero.
+template <typename F>
+auto with_type(vdb_value value, F f) -> decltype(f(static_cast<openvdb::FloatGrid *>(nullptr))) {
+    switch (value) {
+    case VDB_VALUE_FLOAT:
+        return f(static_cast<openvdb::FloatGrid *>(nullptr));
+    case VDB_VALUE_DOUBLE:
+        return f(static_cast<openvdb::DoubleGrid *>(nullptr));
+    case VDB_VALUE_INT32:
+        return f(static_cast<openvdb::Int32Grid *>(nullptr));
+    case VDB_VALUE_INT64:
+        return f(static_cast<openvdb::Int64Grid *>(nullptr));
+    case VDB_VALUE_BOOL:
+        return f(static_cast<openvdb::BoolGrid *>(nullptr));
+    case VDB_VALUE_VEC3S:
+        return f(static_cast<openvdb::Vec3SGrid *>(nullptr));
+    case VDB_VALUE_VEC3D:
+        return f(static_cast<openvdb::Vec3DGrid *>(nullptr));
+    case VDB_VALUE_VEC3I:
+        return f(static_cast<openvdb::Vec3IGrid *>(nullptr));
+    case VDB_VALUE_OTHER:
+        break;
+    }
+    return {};
+}
+
 } // namespace vdb
 
 struct vdb_file {
