@@ -2,6 +2,7 @@
 // shader), textures as sRGB images.
 #include "base/error.h"
 #include "base/memory.h"
+#include "base/swap.h"
 #include "scene/instances.h"
 #include "scene/material.h"
 #include "scene/scene_impl.h"
@@ -77,14 +78,9 @@ bool scene_mesh_exchange(scene_mesh *mesh, scene_mesh *other) {
     if (mesh->data.vertices != other->data.vertices || // not shared by a cache
         mesh->data.textures != other->data.textures)
         return false;
-    gpu_buffer *vertices = mesh->vertices, *indices = mesh->indices;
-    gpu_image **textures = mesh->textures;
-    mesh->vertices = other->vertices;
-    mesh->indices = other->indices;
-    mesh->textures = other->textures;
-    other->vertices = vertices;
-    other->indices = indices;
-    other->textures = textures;
+    SWAP(mesh->vertices, other->vertices);
+    SWAP(mesh->indices, other->indices);
+    SWAP(mesh->textures, other->textures);
     return true;
 }
 

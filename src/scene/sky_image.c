@@ -5,6 +5,7 @@
 #include "base/file.h"
 #include "base/maths.h"
 #include "base/memory.h"
+#include "base/swap.h"
 #include "media/exr.h"
 #include "scene/sky_table.h"
 #include <math.h>
@@ -192,9 +193,7 @@ void sky_image_destroy(sky_image *s, gpu *g) {
 
 bool sky_image_exchange(sky_image *s, sky_image *other) {
     if (s->content != other->content) return false;
-    sky_image own = *s;
-    *s = *other;
-    *other = own;
+    SWAP(*s, *other);
     return true;
 }
 

@@ -81,6 +81,23 @@ void checkpoint_add(checkpoint_list *list, const checkpoint_part *part) {
     list->parts[list->count++] = *part;
 }
 
+void checkpoint_add_text(checkpoint_list *list, const char *label, const char *part,
+                         const char *text) {
+    checkpoint_add(list,
+                   &(checkpoint_part){.name = arena_format(&list->memory, "%s/%s", label, part),
+                                      .size = strlen(text),
+                                      .width = 1,
+                                      .bytes = arena_string(&list->memory, text)});
+}
+
+void checkpoint_add_clock(checkpoint_list *list, const char *label, const void *clock,
+                          size_t size) {
+    checkpoint_add(list, &(checkpoint_part){.name = arena_format(&list->memory, "%s/clock", label),
+                                            .size = size,
+                                            .width = 8,
+                                            .bytes = arena_copy(&list->memory, clock, size)});
+}
+
 void checkpoint_list_free(checkpoint_list *list) {
     mem_free(list->parts);
     arena_free(&list->memory);
@@ -402,6 +419,16 @@ static bool matches(const checkpoint *c, const char *theirs, const char *ours) {
     }
     return err_set("%s: the checkpoint was made with %s, the effect has %s", c->path,
                    show_line(theirs + line, a), show_line(ours + line, b));
+}
+
+bool checkpoint_load_clock(checkpoint *c, const char *label, void *clock, size_t size) {
+    arena memory = {0};
+    bool done = checkpoint_load(c, NULL,
+                                &(checkpoint_part){.name = arena_format(&memory, "%s/clock", label),
+                                                   .size = size,
+                                                   .bytes = clock});
+    arena_free(&memory);
+    return done;
 }
 
 bool checkpoint_require(checkpoint *c, const char *name, const char *ours) {

@@ -24,6 +24,10 @@ typedef struct checkpoint_list { // zero: empty
     arena memory; // for names, and bytes of parts that live no longer than the list
 } checkpoint_list;
 void checkpoint_add(checkpoint_list *list, const checkpoint_part *part);
+// Add "label/part", a text or the numbers of a clock, which are copied.
+void checkpoint_add_text(checkpoint_list *list, const char *label, const char *part,
+                         const char *text);
+void checkpoint_add_clock(checkpoint_list *list, const char *label, const void *clock, size_t size);
 void checkpoint_list_free(checkpoint_list *list);
 
 // Saves the parts. Call it between frames. `g` may be NULL when no part is a buffer.
@@ -40,6 +44,7 @@ bool checkpoint_has(const checkpoint *c, const char *name, uint64_t *size);
 // Loads a part, whose size must be the file's. Call it between frames. On failure the part's
 // content is undefined.
 bool checkpoint_load(checkpoint *c, gpu *g, const checkpoint_part *part);
+bool checkpoint_load_clock(checkpoint *c, const char *label, void *clock, size_t size);
 // Compares a part of lines "key = value" with `ours`. False with a message that names the key that
 // differs.
 bool checkpoint_require(checkpoint *c, const char *name, const char *ours);

@@ -1,4 +1,3 @@
-#include "sim/flow_state.h"
 #include "sim/flow_impl.h"
 #include "sim/state.h"
 
@@ -30,12 +29,4 @@ static void flow_find_state(void *solver, sim_state *out) {
     }
 }
 
-static const sim_state_kind kind = {"flow", flow_describe, flow_find_state, state_reset};
-
-bool flow_state_list(flow *f, gpu *g, const char *label, const char *more, checkpoint_list *out) {
-    return sim_state_list(&kind, f, g, label, more, out);
-}
-
-bool flow_state_load(flow *f, gpu *g, const char *label, const char *more, checkpoint *c) {
-    return sim_state_load(&kind, f, g, label, more, c);
-}
+const sim_state_kind flow_state_kind = {"flow", flow_describe, flow_find_state, state_reset};

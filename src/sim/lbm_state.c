@@ -79,22 +79,14 @@ static size_t list_buffers(const lbm *l, arena *memory, const char *label,
 }
 
 void lbm_state_list(const lbm *l, const char *label, const char *more, checkpoint_list *out) {
-    arena *memory = &out->memory;
     strbuf text = {0};
     lbm_describe(l, more, &text);
-    state_clock *clock = arena_alloc(memory, sizeof *clock);
-    *clock = (state_clock){l->steps, l->kept, l->walls.current, l->walls.filled};
-    checkpoint_add(out, &(checkpoint_part){.name = name(memory, label, "lattice"),
-                                           .size = text.length,
-                                           .width = 1,
-                                           .bytes = arena_string(memory, strbuf_text(&text))});
-    checkpoint_add(out, &(checkpoint_part){.name = name(memory, label, "clock"),
-                                           .size = sizeof *clock,
-                                           .width = 8,
-                                           .bytes = clock});
+    const state_clock clock = {l->steps, l->kept, l->walls.current, l->walls.filled};
+    checkpoint_add_text(out, label, "lattice", strbuf_text(&text));
+    checkpoint_add_clock(out, label, &clock, sizeof clock);
     strbuf_free(&text);
     checkpoint_part buffers[PARTS];
-    size_t count = list_buffers(l, memory, label, buffers);
+    size_t count = list_buffers(l, &out->memory, label, buffers);
     for (size_t i = 0; i < count; i++) checkpoint_add(out, &buffers[i]);
 }
 
@@ -119,10 +111,8 @@ bool lbm_state_load(lbm *l, gpu *g, const char *label, const char *more, checkpo
     state_clock clock;
     checkpoint_part buffers[PARTS];
     lbm_describe(l, more, &text);
-    const checkpoint_part own = {
-        .name = name(&memory, label, "clock"), .size = sizeof clock, .bytes = &clock};
     bool done = checkpoint_require(c, name(&memory, label, "lattice"), strbuf_text(&text)) &&
-                checkpoint_load(c, NULL, &own) && take_clock(l, g, &clock);
+                checkpoint_load_clock(c, label, &clock, sizeof clock) && take_clock(l, g, &clock);
     size_t count = done ? list_buffers(l, &memory, label, buffers) : 0;
     for (size_t i = 0; done && i < count; i++) done = checkpoint_load(c, g, &buffers[i]);
     strbuf_free(&text);

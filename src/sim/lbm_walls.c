@@ -6,6 +6,7 @@
 // left.
 #include "base/error.h"
 #include "base/memory.h"
+#include "base/swap.h"
 #include "sim/lbm_impl.h"
 #include <string.h>
 
@@ -97,17 +98,13 @@ void lbm_walls_reset(lbm *l, gpu *g) {
 
 // The positions of bodies must be set again afterwards.
 void lbm_walls_exchange(lbm *a, lbm *b) {
-    lbm_walls *x = &a->walls, *y = &b->walls, was = *x;
+    lbm_walls *x = &a->walls, *y = &b->walls;
     x->known = y->known = false;
-    x->waves = y->waves;
-    y->waves = was.waves;
+    SWAP(x->waves, y->waves);
     if (!a->desc.bodies || !b->desc.bodies) return;
-    memcpy(x->cells, y->cells, sizeof x->cells);
-    memcpy(y->cells, was.cells, sizeof y->cells);
-    x->current = y->current;
-    y->current = was.current;
-    x->filled = y->filled;
-    y->filled = was.filled;
+    SWAP(x->cells, y->cells);
+    SWAP(x->current, y->current);
+    SWAP(x->filled, y->filled);
 }
 
 void lbm_walls_list(const lbm *l, gpu_buffer *out[LBM_OWN]) {

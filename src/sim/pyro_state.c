@@ -1,4 +1,3 @@
-#include "sim/pyro_state.h"
 #include "sim/pyro_impl.h"
 #include "sim/state.h"
 
@@ -33,12 +32,4 @@ static void pyro_find_state(void *solver, sim_state *out) {
     }
 }
 
-static const sim_state_kind kind = {"pyro", pyro_describe, pyro_find_state, state_reset};
-
-bool pyro_state_list(pyro *p, gpu *g, const char *label, const char *more, checkpoint_list *out) {
-    return sim_state_list(&kind, p, g, label, more, out);
-}
-
-bool pyro_state_load(pyro *p, gpu *g, const char *label, const char *more, checkpoint *c) {
-    return sim_state_load(&kind, p, g, label, more, c);
-}
+const sim_state_kind pyro_state_kind = {"pyro", pyro_describe, pyro_find_state, state_reset};

@@ -52,19 +52,11 @@ static char *describe(const sim_state_kind *kind, const void *solver, const char
 bool sim_state_list(const sim_state_kind *kind, void *solver, gpu *g, const char *label,
                     const char *more, checkpoint_list *out) {
     arena *memory = &out->memory;
-    state_clock *clock = arena_alloc(memory, sizeof *clock);
-    char *lines = describe(kind, solver, more, memory);
     sim_state s = {0};
     kind->find(solver, &s);
-    *clock = (state_clock){*s.steps, *s.kept};
-    checkpoint_add(out, &(checkpoint_part){.name = name(memory, label, kind->name),
-                                           .size = strlen(lines),
-                                           .width = 1,
-                                           .bytes = lines});
-    checkpoint_add(out, &(checkpoint_part){.name = name(memory, label, "clock"),
-                                           .size = sizeof *clock,
-                                           .width = 8,
-                                           .bytes = clock});
+    const state_clock clock = {*s.steps, *s.kept};
+    checkpoint_add_text(out, label, kind->name, describe(kind, solver, more, memory));
+    checkpoint_add_clock(out, label, &clock, sizeof clock);
     for (size_t i = 0; i < s.buffer_count; i++) {
         const checkpoint_part part = buffer_part(&s, i, memory, label);
         checkpoint_add(out, &part);
@@ -111,9 +103,7 @@ static bool state_load(const sim_state_kind *kind, void *solver, gpu *g, arena *
                        const char *label, checkpoint *c) {
     state_clock clock;
     sim_state s = {0};
-    const checkpoint_part own = {
-        .name = name(memory, label, "clock"), .size = sizeof clock, .bytes = &clock};
-    if (!checkpoint_load(c, NULL, &own)) return false;
+    if (!checkpoint_load_clock(c, label, &clock, sizeof clock)) return false;
     if (clock.steps > UINT64_C(1) << 60 || clock.kept > clock.steps + 1)
         return err_set("the checkpoint's clock is damaged");
     if (!state_clear(kind, solver, g)) return false;

@@ -22,6 +22,7 @@ typedef struct sim_state_kind {                          // of a solver
     void (*find)(void *solver, sim_state *out);
     bool (*reset)(void *solver, gpu *g); // inside a frame: goes back to the first of each pair
 } sim_state_kind;
+extern const sim_state_kind flow_state_kind, pyro_state_kind;
 
 // Adds its parts under "label/...", between frames. `more`: further lines. False with a message.
 bool sim_state_list(const sim_state_kind *kind, void *solver, gpu *g, const char *label,

@@ -4,8 +4,7 @@
 #include "base/memory.h"
 #include "base/str.h"
 #include "pass/air/pyro_parts.h"
-#include "sim/pyro_state.h"
-#include <math.h>
+#include "sim/state.h"
 
 static const float worst_residual = 0.05f; // of the greatest speed
 static const double most_courant = 3;      // cells of the velocity a step
@@ -86,7 +85,8 @@ static void pyro_air_save(const pass *p, checkpoint_list *out) {
     strbuf more = {0};
     air_describe(&a->air, &more);
     // What could not be read is missed when it is loaded.
-    if (!pyro_state_list(a->solver, p->host->device, p->label, strbuf_text(&more), out))
+    if (!sim_state_list(&pyro_state_kind, a->solver, p->host->device, p->label, strbuf_text(&more),
+                        out))
         log_write(LOG_WARNING, "%s: %s", p->label, err_get());
     air_save_templates(&a->air, out);
     strbuf_free(&more);
@@ -97,9 +97,9 @@ static bool pyro_air_load(pass *p, checkpoint *from) {
     strbuf more = {0};
     air_describe(&a->air, &more);
     air_restart(p);
-    a->air.fresh =
-        !pyro_state_load(a->solver, p->host->device, p->label, strbuf_text(&more), from) ||
-        !air_load_templates(&a->air, from);
+    a->air.fresh = !sim_state_load(&pyro_state_kind, a->solver, p->host->device, p->label,
+                                   strbuf_text(&more), from) ||
+                   !air_load_templates(&a->air, from);
     strbuf_free(&more);
     return !a->air.fresh;
 }

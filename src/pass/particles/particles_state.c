@@ -2,9 +2,9 @@
 // the clock.
 #include "base/error.h"
 #include "base/str.h"
+#include "base/swap.h"
 #include "pass/particles/particles_parts.h"
 #include "sim/checkpoint.h"
-#include <math.h>
 
 enum { PARTS = 2 * PARTICLES_PARTS + 1 };
 
@@ -44,21 +44,12 @@ static size_t list_buffers(const particles_state *s, arena *memory, checkpoint_p
 
 void particles_save(const pass *p, checkpoint_list *out) {
     const particles_state *s = particles_of(p);
-    arena *memory = &out->memory;
     strbuf text = {0};
     checkpoint_part buffers[PARTS];
     describe(s, &text);
-    particles_clock *clock = arena_alloc(memory, sizeof *clock);
-    *clock = s->clock;
-    checkpoint_add(out, &(checkpoint_part){.name = name(memory, s, "shape"),
-                                           .size = text.length,
-                                           .width = 1,
-                                           .bytes = arena_string(memory, strbuf_text(&text))});
-    checkpoint_add(out, &(checkpoint_part){.name = name(memory, s, "clock"),
-                                           .size = sizeof *clock,
-                                           .width = 8,
-                                           .bytes = clock});
-    size_t count = list_buffers(s, memory, buffers);
+    checkpoint_add_text(out, p->label, "shape", strbuf_text(&text));
+    checkpoint_add_clock(out, p->label, &s->clock, sizeof s->clock);
+    size_t count = list_buffers(s, &out->memory, buffers);
     for (size_t i = 0; i < count; i++) checkpoint_add(out, &buffers[i]);
     strbuf_free(&text);
 }
@@ -79,10 +70,9 @@ bool particles_load(pass *p, checkpoint *from) {
     particles_clock clock;
     checkpoint_part buffers[PARTS];
     describe(s, &text);
-    const checkpoint_part own = {
-        .name = name(&memory, s, "clock"), .size = sizeof clock, .bytes = &clock};
     bool done = checkpoint_require(from, name(&memory, s, "shape"), strbuf_text(&text)) &&
-                checkpoint_load(from, NULL, &own) && take_clock(s, &clock);
+                checkpoint_load_clock(from, p->label, &clock, sizeof clock) &&
+                take_clock(s, &clock);
     size_t count = done ? list_buffers(s, &memory, buffers) : 0;
     for (size_t i = 0; done && i < count; i++)
         done = checkpoint_load(from, p->host->device, &buffers[i]);
@@ -97,14 +87,8 @@ bool particles_exchange(pass *p, pass *other) {
     if (a->desc.count != b->desc.count || a->desc.time_step != b->desc.time_step ||
         a->desc.warm_up != b->desc.warm_up || a->carries != b->carries)
         return false;
-    particles_buffers buffers = a->buffers;
-    particles_clock clock = a->clock;
-    bool fresh = a->fresh;
-    a->buffers = b->buffers;
-    a->clock = b->clock;
-    a->fresh = b->fresh;
-    b->buffers = buffers;
-    b->clock = clock;
-    b->fresh = fresh;
+    SWAP(a->buffers, b->buffers);
+    SWAP(a->clock, b->clock);
+    SWAP(a->fresh, b->fresh);
     return true;
 }

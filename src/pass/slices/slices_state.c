@@ -3,9 +3,8 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/str.h"
-#include "pass/slices/slices_parts.h"
-#include "pass/slices/slices_templates.h"
-#include "sim/flow_state.h"
+#include "pass/slices/slices_templates_parts.h"
+#include "sim/state.h"
 
 static void describe(const slices_flow *f, strbuf *out) {
     strbuf_add(out, "height = %.9g\n", f->desc.height);
@@ -29,7 +28,8 @@ void slices_save(const pass *p, checkpoint_list *out) {
     checkpoint_part templates;
     describe(f, &more);
     // What could not be read is missed when it is loaded.
-    if (!flow_state_list(f->solver, p->host->device, p->label, strbuf_text(&more), out))
+    if (!sim_state_list(&flow_state_kind, f->solver, p->host->device, p->label, strbuf_text(&more),
+                        out))
         log_write(LOG_WARNING, "%s: %s", p->label, err_get());
     if (templates_part(p, &out->memory, &templates)) checkpoint_add(out, &templates);
     strbuf_free(&more);
@@ -43,10 +43,11 @@ bool slices_load(pass *p, checkpoint *from) {
     checkpoint_part templates;
     describe(f, &more);
     slices_restart(p);
-    bool done = flow_state_load(f->solver, device, p->label, strbuf_text(&more), from);
+    bool done =
+        sim_state_load(&flow_state_kind, f->solver, device, p->label, strbuf_text(&more), from);
     if (done && templates_part(p, &memory, &templates)) {
         done = checkpoint_load(from, device, &templates);
-        if (done) f->templates->loaded(f);
+        if (done) f->templates->set.fresh = false;
     }
     f->fresh = !done;
     strbuf_free(&more);
