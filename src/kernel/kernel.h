@@ -8,8 +8,7 @@
 // user declares is a bug, which kernel_undeclared finds.
 //
 //     #define NAMES(NAME) NAME(size), NAME(weights), NAME(FlowVelocity)
-//     enum { NAMES(KERNEL_NAME_ID) };                                  // N_size, N_weights, ...
-//     static const char *const names[] = {NAMES(KERNEL_NAME_TEXT)};
+//     KERNEL_NAMES(NAMES); // N_size, N_weights, ... and the table `names`
 //     ...
 //     kernel_set(&k, N_weights, weights, sizeof weights);
 //     kernel_bind_buffer(&k, N_FlowVelocity, velocity);
@@ -20,6 +19,9 @@
 
 #define KERNEL_NAME_ID(NAME) N_##NAME
 #define KERNEL_NAME_TEXT(NAME) #NAME
+#define KERNEL_NAMES(NAMES)                                                                        \
+    enum { NAMES(KERNEL_NAME_ID) };                                                                \
+    static const char *const names[] = {NAMES(KERNEL_NAME_TEXT)}
 
 enum { KERNEL_STAGES = 2 }; // vertex and fragment; a compute shader uses the first
 

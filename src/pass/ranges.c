@@ -9,8 +9,7 @@
 #define NAMES(NAME)                                                                                \
     NAME(values), NAME(index), NAME(ranges), NAME(size), NAME(count), NAME(from), NAME(level),     \
         NAME(repeats), NAME(x), NAME(from_x)
-enum { NAMES(KERNEL_NAME_ID) };
-static const char *const names[] = {NAMES(KERNEL_NAME_TEXT)};
+KERNEL_NAMES(NAMES);
 static const char *const shaders[] = {"pass/grids/grid_ranges.comp"};
 const kernel_table ranges_kernel_table = {{names, COUNT_OF(names)}, shaders, COUNT_OF(shaders)};
 enum { WHOLE_BYTES = 32004 }; // that its groups share where blocks are not packed

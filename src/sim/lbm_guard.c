@@ -10,8 +10,7 @@
 #define NAMES(NAME)                                                                                \
     NAME(Moments), NAME(Parts), NAME(Notes), NAME(result), NAME(count), NAME(stride),              \
         NAME(spoilt_speed), NAME(spoilt_drift)
-enum { NAMES(KERNEL_NAME_ID) };
-static const char *const names[] = {NAMES(KERNEL_NAME_TEXT)};
+KERNEL_NAMES(NAMES);
 static const char *const shader[] = {"sim/lbm/guard.comp"};
 const kernel_table lbm_guard_kernel_table = {{names, COUNT_OF(names)}, shader, 1};
 

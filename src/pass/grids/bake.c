@@ -13,8 +13,7 @@
 #include <string.h>
 
 #define NAMES(NAME) NAME(values), NAME(finer)
-enum { NAMES(KERNEL_NAME_ID) };
-static const char *const names[] = {NAMES(KERNEL_NAME_TEXT)};
+KERNEL_NAMES(NAMES);
 
 enum { BAKE, LEVEL, KERNELS };
 static const pass_kernel kernels[KERNELS] = {

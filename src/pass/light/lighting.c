@@ -68,8 +68,7 @@ static uint32_t level_of(lighting_stage stage) {
         NAME(shadow_made), NAME(lights), NAME(shadow), NAME(glow), NAME(albedo), NAME(sweeps),     \
         NAME(hastened), NAME(last_sweep), NAME(shadow_resolution), NAME(glow_resolution),          \
         NAME(fire_lights), NAME(rig)
-enum { NAMES(KERNEL_NAME_ID) };
-static const char *const names[] = {NAMES(KERNEL_NAME_TEXT)};
+KERNEL_NAMES(NAMES);
 
 // What one stage leaves for others, besides the outputs: the shader writes NAME_kept and reads
 // NAME_made, in the order of GRID_NAMES.

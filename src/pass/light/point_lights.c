@@ -9,8 +9,7 @@ enum { TEXELS = 4 }; // of a light_entry
 
 #define NAMES(NAME)                                                                                \
     NAME(point_lights), NAME(point_light_total), NAME(point_light_group), NAME(Instances)
-enum { NAMES(KERNEL_NAME_ID) };
-static const char *const names[] = {NAMES(KERNEL_NAME_TEXT)};
+KERNEL_NAMES(NAMES);
 
 typedef struct point_lights_state {
     uint32_t count;

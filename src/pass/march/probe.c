@@ -5,8 +5,7 @@
 #include <string.h>
 
 #define NAMES(NAME) NAME(origin), NAME(way), NAME(nearest), NAME(farthest), NAME(Probed)
-enum { NAMES(KERNEL_NAME_ID) };
-static const char *const names[] = {NAMES(KERNEL_NAME_TEXT)};
+KERNEL_NAMES(NAMES);
 
 enum { RESULT = (1 + PASS_PROBE_VALUES) * 4 * sizeof(float) };
 

@@ -3,8 +3,7 @@
 #include "pass/pass_impl.h"
 
 #define NAMES(NAME) NAME(target), NAME(color), NAME(edge)
-enum { NAMES(KERNEL_NAME_ID) };
-static const char *const names[] = {NAMES(KERNEL_NAME_TEXT)};
+KERNEL_NAMES(NAMES);
 
 static bool stack_declare(pass *p) {
     const uint32_t side = pass_option_number(p, N_target); // 0: as the pass's scale says

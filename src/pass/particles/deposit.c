@@ -9,8 +9,7 @@
 #include <string.h>
 
 #define NAMES(NAME) NAME(density), NAME(velocity), NAME(moving), NAME(cells), NAME(DepositSums)
-enum { NAMES(KERNEL_NAME_ID) };
-static const char *const names[] = {NAMES(KERNEL_NAME_TEXT)};
+KERNEL_NAMES(NAMES);
 
 enum { ADD, SHOW, STAGES };
 static const pass_kernel kernels[STAGES] = {

@@ -18,8 +18,7 @@ enum { MOST_TRIANGLES = 4096 };
 #define NAMES(NAME)                                                                                \
     SCENE_NAMES(NAME), NAME(depth), NAME(picture), NAME(PieceTriangles), NAME(PieceMaterials),     \
         NAME(PieceDepths), NAME(PieceNumbers)
-enum { NAMES(KERNEL_NAME_ID) };
-static const char *const names[] = {NAMES(KERNEL_NAME_TEXT)};
+KERNEL_NAMES(NAMES);
 
 typedef enum pieces_stage { DEPTH, NUMBER, SHOW, STAGES } pieces_stage;
 static const pass_kernel kernels[STAGES] = {

@@ -22,8 +22,7 @@ static const pass_kernel kernels[FORWARD_KERNELS] = {
 #define NAMES(NAME)                                                                                \
     RAYS_NAMES(NAME), NAME(lod), NAME(max_distance), NAME(color), NAME(normal), NAME(depth),       \
         NAME(picture)
-enum { NAMES(KERNEL_NAME_ID) };
-static const char *const names[] = {NAMES(KERNEL_NAME_TEXT)};
+KERNEL_NAMES(NAMES);
 
 typedef struct forward_state {
     drawn *drawn;

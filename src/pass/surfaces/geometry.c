@@ -25,8 +25,7 @@ static const pass_kernel kernels[GEOMETRY_KERNELS] = {
 #define NAMES(NAME)                                                                                \
     NAME(albedo), NAME(normal), NAME(depth), NAME(surface), NAME(emission), NAME(mode), NAME(lod), \
         NAME(max_distance), NAME(shown), NAME(placed), NAME(holes)
-enum { NAMES(KERNEL_NAME_ID) };
-static const char *const names[] = {NAMES(KERNEL_NAME_TEXT)};
+KERNEL_NAMES(NAMES);
 
 typedef struct geometry_state {
     bool rays;

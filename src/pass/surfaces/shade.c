@@ -18,8 +18,7 @@ static const pass_kernel kernels[SHADE_KERNELS] = {
 #define NAMES(NAME)                                                                                \
     RAYS_NAMES(NAME), NAME(lights), NAME(color), NAME(width), NAME(height), NAME(shaft_lights),    \
         NAME(Shafts)
-enum { NAMES(KERNEL_NAME_ID) };
-static const char *const names[] = {NAMES(KERNEL_NAME_TEXT)};
+KERNEL_NAMES(NAMES);
 
 typedef struct shade_state {
     gpu_buffer *lists; // of leaves, for each tile and light
