@@ -96,7 +96,7 @@ static bool is_wanted(const effect *e, const pass *p) {
 enum { ANY_SIZE = 64 }; // of a picture: finds what is wrong with a graph whatever its size
 
 static bool check_one(void *user, size_t index) {
-    return pass_check(((effect *)user)->passes[index]);
+    return pass_build(((effect *)user)->passes[index]);
 }
 
 static bool build_one(void *user, size_t index) {

@@ -241,21 +241,6 @@ bool pass_allocate(pass *p) {
     return allocate(p) || pass_locate_error(p);
 }
 
-static bool check_one(pass *p) {
-    p->program = generate(p);
-    if (!p->program) return err_prefix("%s: ", p->label);
-    return p->type && p->type->check ? p->type->check(p) : pass_compile_kernels(p);
-}
-
-bool pass_check_part(pass *p) {
-    return check_one(p) || pass_locate_error(p);
-}
-
-// What pass_build can find wrong without a device.
-bool pass_check(pass *p) {
-    return p->runs_in || pass_check_part(p);
-}
-
 void pass_destroy(pass *p) {
     gpu *device = p->host->device;
     for (size_t i = 0; i < p->buffer_count; i++) gpu_buffer_destroy(device, *p->buffers[i]);

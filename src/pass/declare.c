@@ -224,6 +224,7 @@ bool pass_declare(pass *p) {
     for (size_t i = 0; i < count; i++)
         if (rows[i]->find && !rows[i]->find(p)) return false;
     if (p->type && p->type->declare) return p->type->declare(p);
+    if (p->type && p->type->runs_inside) return true;
     return pass_declare_images(p) && pass_add_to_graph(p);
 }
 

@@ -1,7 +1,6 @@
 // Kernels of a pass: compiled with its options, fields and what its type adds, and given by number
 // what the pass knows. Each slot's source is found once, when the kernel is compiled.
 #include "base/error.h"
-#include "base/log.h"
 #include "base/memory.h"
 #include "base/worker.h"
 #include "pass/pass_impl.h"
@@ -296,41 +295,29 @@ static void allocate(pass *p) {
 }
 
 // What is there stays until all of it is made anew.
-static bool make(pass *p, size_t index, bool built) {
+static bool make(pass *p, size_t index) {
     pass_built made = {.base.pipeline = NULL};
     bool left_out;
     if (!compile_kernel(p, index, &made, &left_out)) return false;
-    if (built && !left_out && !build_kernel(p, index, &made)) return false;
+    if (p->host->device && !left_out && !build_kernel(p, index, &made)) return false;
     kernel_destroy(&p->built[index].base, p->host->device);
     p->built[index] = made;
     return true;
 }
 
-static bool compile_one(void *user, size_t index) {
-    return make(user, index, false);
-}
-
 static bool build_one(void *user, size_t index) {
     pass *p = user;
-    const bool later =
-        index < count_own(p) && p->type && p->type->foresees && !p->type->foresees(p, index);
-    return later || make(p, index, true);
-}
-
-static bool for_each(pass *p, bool (*run)(void *user, size_t index)) {
-    allocate(p);
-    if (!worker_each(p->built_count, run, p)) return false;
-    for (size_t i = 0; i < p->built_count; i++)
-        if (p->built[i].base.stages) note_wanted(p, &p->built[i]);
-    return true;
-}
-
-bool pass_compile_kernels(pass *p) {
-    return for_each(p, compile_one);
+    const bool later = p->host->device && index < count_own(p) && p->type && p->type->foresees &&
+                       !p->type->foresees(p, index);
+    return later || make(p, index);
 }
 
 bool pass_build_kernels(pass *p) {
-    return for_each(p, build_one);
+    allocate(p);
+    if (!worker_each(p->built_count, build_one, p)) return false;
+    for (size_t i = 0; i < p->built_count; i++)
+        if (p->built[i].base.stages) note_wanted(p, &p->built[i]);
+    return true;
 }
 
 bool pass_has_kernel(const pass *p, size_t index) {
@@ -358,7 +345,7 @@ bool pass_reads_texture(const pass *p, size_t texture) {
 
 bool pass_make_kernel(pass *p, size_t index, bool again) {
     if (pass_has_kernel(p, index) && !again) return true;
-    if (!make(p, index, true)) return false;
+    if (!make(p, index)) return false;
     note_wanted(p, &p->built[index]);
     return true;
 }

@@ -119,6 +119,7 @@ typedef struct pass_type {
     const kernel_table *solver; // whose slots its kernels may have (pass_solver_places); NULL: none
     pass_meshes_use meshes;
     bool unscaled;                     // what it writes has a size of its own
+    bool runs_inside;                  // another pass runs it: it is not in the graph
     bool constructed;                  // by a function or method of Lua of its own, not by NAME { }
     const pass_simulation *simulation; // NULL: it does not simulate
     // Optional hooks.
@@ -127,13 +128,14 @@ typedef struct pass_type {
     // Adds what a kernel is compiled with. False: it is left out until pass_make_kernel.
     bool (*defines)(pass *p, size_t index, pass_defines *out);
     // Returns whether frames may need a kernel, as far as that is known before the first. Other
-    // kernels are compiled by pass_check alone, and built by pass_make_late. NULL: they need all.
+    // kernels are compiled without a device alone, and built by pass_make_late. NULL: they need
+    // all.
     bool (*foresees)(const pass *p, size_t index);
     // Says what a kernel that draws draws to: formats, depth, culling and blending.
     void (*target)(const pass *p, size_t index, gpu_graphics_desc *out);
     bool (*update)(pass *p); // numbers of a frame that the host computes, by pass_set
-    bool (*check)(pass *p);  // compile all that build would, without a device
-    bool (*build)(pass *p);  // instead of one pipeline; see pass_build
+    // Instead of one pipeline; see pass_build. Without a device it compiles, and builds nothing.
+    bool (*build)(pass *p);
     // Buffers of its state whose sizes are known once the graph is compiled: pass_allocate makes
     // those that are not there, pass_list_memory counts them, and they go with the pass.
     size_t (*buffers)(const pass *p, pass_buffer out[PASS_BUFFERS]);
@@ -201,10 +203,9 @@ bool pass_complete(pass *p);
 const pass_simulation *pass_get_simulation(const pass *p); // NULL: it does not simulate
 bool pass_draws_meshes(const pass *p);
 bool pass_traces_levels(const pass *p); // its rays meet meshes as they are simplified
-// Compiles the shaders; needs no device. Passes of one effect may be checked, or built, side by
-// side.
-bool pass_check(pass *p);
-bool pass_build(pass *p); // shaders and pipelines: needs a device, but any thread may do it
+// Compiles the shaders, all of them where the host has no device, and builds the pipelines where it
+// has one. Any thread may do it; passes of one effect may be built side by side.
+bool pass_build(pass *p);
 // After pass_build: adds what the pass lacks of the device's memory, for pass_allocate and for
 // frames. It counts its own memory only: the graph counts images, and the scene what
 // `budget_list_first` is asked about. It leaves out what takes some texels, and what frames alone

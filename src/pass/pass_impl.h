@@ -70,8 +70,7 @@ struct pass {
 // Puts the line that made it before the message, unless one stands there. Always returns false.
 bool pass_locate_error(const pass *p);
 
-// Do what pass_check and pass_build do, for a pass that runs in another.
-bool pass_check_part(pass *p);
+// Does what pass_build does, for a pass that runs in another.
 bool pass_build_part(pass *p);
 
 // ---- kernels ----------------------------------------------------------------------------------
@@ -165,8 +164,7 @@ bool pass_describe_stage(pass *p, const char *shader, shader_stage stage,
                          const pass_defines *defines, shader_compile_desc *out);
 kernel_names pass_names_of(const pass *p); // the type's; none of a user's shader
 void pass_find_names(pass *p);
-bool pass_compile_kernels(pass *p);
-bool pass_build_kernels(pass *p);
+bool pass_build_kernels(pass *p); // without a device only compiles them
 void pass_destroy_kernels(pass *p);
 void pass_copy_values(pass *p); // of uniforms into all kernels
 // Find what a texture of the fields, or an image of the interface, is now.

@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/maths.h"
 #include "base/memory.h"
+#include "base/swap.h"
 #include "pass/pass_impl.h"
 #include <string.h>
 
@@ -138,7 +139,6 @@ void template_set_exchange(template_set *a, template_set *b) {
     for (uint32_t i = 0; i < a->group_count && same; i++)
         same = a->groups[i]->count == b->groups[i]->count;
     if (!same) return;
-    const template_set own = *a;
-    a->instances = b->instances, a->fresh = b->fresh;
-    b->instances = own.instances, b->fresh = own.fresh;
+    SWAP(a->instances, b->instances);
+    SWAP(a->fresh, b->fresh);
 }

@@ -42,8 +42,8 @@ typedef struct voxels_desc {
 // Prepares the meshes. Needs no device. NULL with a message.
 voxels *voxels_create(arena *memory, const voxels_desc *desc);
 extern const kernel_table voxels_kernel_table;
-bool voxels_compile(voxels *v, shader_library *library, const shader_reader *reader);
-bool voxels_build(voxels *v, gpu *g);    // pipelines; any thread
+// Compiles the shaders, and with a device builds their pipelines. Any thread.
+bool voxels_build(voxels *v, gpu *g, shader_library *library, const shader_reader *reader);
 bool voxels_allocate(voxels *v, gpu *g); // buffers, all empty; again: does nothing
 // Adds what voxels_allocate and the first update will take, and voxels_write_distance. Bodies are
 // taken as they are at the context's time, and however they turn from there; one that is scaled up

@@ -16,8 +16,7 @@ static const char *const shaders[VOXELS_STAGES] = {
     NAME(VoxelState), NAME(VoxelLists), NAME(VoxelPoints), NAME(VoxelItems), NAME(VoxelPlaced),    \
         NAME(VoxelMasks), NAME(VoxelIds), NAME(VoxelKeys), NAME(VoxelSeeds), NAME(VoxelNextSeeds), \
         NAME(values), NAME(apart)
-enum { NAMES(KERNEL_NAME_ID) };
-static const char *const names[] = {NAMES(KERNEL_NAME_TEXT)};
+KERNEL_NAMES(NAMES);
 
 const kernel_table voxels_kernel_table = {{names, COUNT_OF(names)}, shaders, COUNT_OF(shaders)};
 
@@ -34,19 +33,14 @@ static int stages_of(const voxels *v) {
     return v->distances ? VOXELS_STAGES : VOXELS_NEAR;
 }
 
-bool voxels_compile(voxels *v, shader_library *library, const shader_reader *reader) {
+bool voxels_build(voxels *v, gpu *g, shader_library *library, const shader_reader *reader) {
     for (int i = 0; i < stages_of(v); i++) {
         const shader_compile_desc shader = {.name = shaders[i], .reader = reader};
         if (!kernel_compile_compute(&v->kernels[i], library, v->memory, &shader,
-                                    voxels_kernel_table.names))
+                                    voxels_kernel_table.names) ||
+            (g && !kernel_build(&v->kernels[i], g)))
             return false;
     }
-    return true;
-}
-
-bool voxels_build(voxels *v, gpu *g) {
-    for (int i = 0; i < stages_of(v); i++)
-        if (!kernel_build(&v->kernels[i], g)) return false;
     return true;
 }
 

@@ -2,7 +2,7 @@
 #include "sim/flow.h"
 #include "base/error.h"
 #include "base/memory.h"
-#include "base/str.h"
+#include "base/swap.h"
 #include "sim/flow_impl.h"
 #include <string.h>
 
@@ -51,7 +51,7 @@ const flow_desc *flow_get_desc(const flow *f) {
     return &f->desc;
 }
 
-uint64_t flow_cells(const flow *f) {
+static uint64_t flow_cells(const flow *f) { // of all slices
     return (uint64_t)f->desc.size[0] * f->desc.size[1] * f->desc.slices;
 }
 
@@ -158,13 +158,9 @@ static bool flow_compile_kernels(flow *f, const gpu_profile *device, shader_libr
     return true;
 }
 
-bool flow_compile(flow *f, shader_library *library, const shader_reader *reader) {
-    return flow_compile_kernels(f, gpu_get_profile(NULL), library, reader);
-}
-
 bool flow_build(flow *f, gpu *g, shader_library *library, const shader_reader *reader) {
     if (!flow_compile_kernels(f, gpu_get_profile(g), library, reader)) return false;
-    for (int i = 0; i < FLOW_KERNELS; i++)
+    for (int i = 0; g && i < FLOW_KERNELS; i++)
         if (f->kernels[i].stages && !kernel_build(&f->kernels[i], g)) return false;
     return true;
 }
@@ -310,16 +306,11 @@ uint64_t flow_steps(const flow *f) {
 static void swap_state(flow *a, flow *b) {
     static const flow_memory state[] = {FLOW_MEM_VELOCITY, FLOW_MEM_SCALARS, FLOW_MEM_SCALARS + 1,
                                         FLOW_MEM_PRESSURE, FLOW_MEM_PRESSURE + 1};
-    const flow was = *a;
-    for (size_t i = 0; i < sizeof state / sizeof *state; i++) {
-        a->buffers[state[i]] = b->buffers[state[i]];
-        b->buffers[state[i]] = was.buffers[state[i]];
-    }
-    memcpy(a->looks, b->looks, sizeof a->looks);
-    memcpy(b->looks, was.looks, sizeof b->looks);
-    a->current = b->current, b->current = was.current;
-    a->kept = b->kept, b->kept = was.kept;
-    a->steps = b->steps, b->steps = was.steps;
+    for (size_t i = 0; i < COUNT_OF(state); i++) SWAP(a->buffers[state[i]], b->buffers[state[i]]);
+    SWAP(a->looks, b->looks);
+    SWAP(a->current, b->current);
+    SWAP(a->kept, b->kept);
+    SWAP(a->steps, b->steps);
 }
 
 bool flow_exchange(flow *a, flow *b) {

@@ -68,9 +68,8 @@ typedef struct flow_numbers { // parameters of a step; they may change with each
 flow *flow_create(arena *memory, const flow_desc *desc); // NULL with a message
 const flow_desc *flow_get_desc(const flow *f);           // after flow_build with its choices
 
-// Compiles everything that flow_build needs, without a device. `reader` may be NULL.
-bool flow_compile(flow *f, shader_library *library, const shader_reader *reader);
-// Builds shaders and pipelines. Any thread. flow_defines is valid afterwards.
+// Compiles the shaders, and with a device builds their pipelines. Any thread. `reader` may be NULL.
+// flow_defines is valid afterwards.
 bool flow_build(flow *f, gpu *g, shader_library *library, const shader_reader *reader);
 // Allocates the state. Its content is undefined until flow_reset; an existing state is kept.
 bool flow_allocate(flow *f, gpu *g);

@@ -132,7 +132,6 @@ struct flow {
     kernel_readback report;
 };
 
-uint64_t flow_cells(const flow *f); // of all slices
 // A buffer of a pair: the current one (0), the other (1).
 gpu_buffer *flow_pair(const flow *f, flow_memory pair, uint32_t which);
 
@@ -143,7 +142,6 @@ bool flow_run_tiles(const flow *f, gpu *g, kernel *k, const uint32_t size[2]);
 
 // The image that kept states of an even or odd number are looked at in, unless it is there.
 gpu_image_desc flow_describe_look(const flow *f, flow_look look);
-bool flow_make_look(flow *f, gpu *g, uint32_t which, flow_look look);
 
 // ---- pressure: flow_pressure.c ----------------------------------------------------------------
 
@@ -156,8 +154,6 @@ bool flow_project(flow *f, gpu *g, const flow_numbers *numbers);
 
 // Whether products are of halves of rows; then modes that look the same from both ends come first.
 bool flow_transform_folds(const flow_desc *desc, uint32_t tile);
-// size[0] modes of size[0] cells, each of length 1, and by what the equation multiplies each.
-void flow_transform_modes(const flow_desc *desc, bool folds, float *out);
 uint64_t flow_transform_bytes(const flow *f); // of the modes
 bool flow_transform_allocate(flow *f, gpu *g);
 // From a residual to z, and the product of both.

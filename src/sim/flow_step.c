@@ -106,7 +106,7 @@ gpu_image_desc flow_describe_look(const flow *f, flow_look look) {
                             .use = GPU_USE_SAMPLED | GPU_USE_STORAGE};
 }
 
-bool flow_make_look(flow *f, gpu *g, uint32_t which, flow_look look) {
+static bool flow_make_look(flow *f, gpu *g, uint32_t which, flow_look look) {
     gpu_image **image = &f->looks[which][look];
     const gpu_image_desc desc = flow_describe_look(f, look);
     if (!*image) *image = gpu_image_create(g, &desc);

@@ -31,7 +31,8 @@ static double mode_of(const flow_desc *desc, uint32_t k, double i, double *waves
     return open[0] ? sin(*waves * middle) : cos(*waves * middle);
 }
 
-void flow_transform_modes(const flow_desc *desc, bool folds, float *out) {
+// size[0] modes of size[0] cells, each of length 1, and by what the equation multiplies each.
+static void flow_transform_modes(const flow_desc *desc, bool folds, float *out) {
     const uint32_t n = desc->size[0];
     for (uint32_t k = 0; k < n; k++) {
         double waves = 0, square = 0;

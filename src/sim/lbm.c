@@ -7,7 +7,7 @@
 // that buffer when it is compiled.
 #include "sim/lbm.h"
 #include "base/error.h"
-#include "base/memory.h"
+#include "base/swap.h"
 #include "sim/lbm_impl.h"
 #include <string.h>
 
@@ -151,13 +151,10 @@ static bool lbm_compile_kernels(lbm *l, const gpu *g, shader_library *library,
            lbm_step_compile(l, device, library, reader) && lbm_walls_compile(l, library, reader);
 }
 
-bool lbm_compile(lbm *l, shader_library *library, const shader_reader *reader) {
-    return lbm_compile_kernels(l, NULL, library, reader);
-}
-
 bool lbm_build(lbm *l, gpu *g, shader_library *library, const shader_reader *reader) {
-    return lbm_compile_kernels(l, g, library, reader) && kernel_build(&l->reset.base, g) &&
-           lbm_step_build(l, g) && lbm_walls_build(l, g);
+    return lbm_compile_kernels(l, g, library, reader) &&
+           (!g ||
+            (kernel_build(&l->reset.base, g) && lbm_step_build(l, g) && lbm_walls_build(l, g)));
 }
 
 size_t lbm_defines(const lbm *l, shader_define out[LBM_MAX_DEFINES]) {
@@ -237,16 +234,11 @@ static bool same_structure(const lbm_desc *a, const lbm_desc *b) {
 
 bool lbm_exchange(lbm *a, lbm *b) {
     if (!same_structure(&a->desc, &b->desc)) return false;
-    lbm was = *a;
     lbm_walls_exchange(a, b);
-    memcpy(a->state, b->state, sizeof a->state);
-    memcpy(a->moments, b->moments, sizeof a->moments);
-    a->kept = b->kept;
-    a->steps = b->steps;
-    memcpy(b->state, was.state, sizeof b->state);
-    memcpy(b->moments, was.moments, sizeof b->moments);
-    b->kept = was.kept;
-    b->steps = was.steps;
+    SWAP(a->state, b->state);
+    SWAP(a->moments, b->moments);
+    SWAP(a->kept, b->kept);
+    SWAP(a->steps, b->steps);
     return true;
 }
 

@@ -78,9 +78,8 @@ uint32_t lbm_depth(const lbm *l); // elements, or bundles of them, along z; afte
 // Returns the square of the speed of sound of a scalar set: 1/4 (D3Q7) or 1/3.
 float lbm_scalar_speed(lbm_scalar_set set);
 
-// Compiles everything that lbm_build needs, without a device. `reader` may be NULL.
-bool lbm_compile(lbm *l, shader_library *library, const shader_reader *reader);
-// Builds shaders and pipelines. Any thread. lbm_defines and lbm_bind are valid afterwards.
+// Compiles the shaders, and with a device builds their pipelines. Any thread. `reader` may be NULL.
+// lbm_defines and lbm_bind are valid afterwards.
 bool lbm_build(lbm *l, gpu *g, shader_library *library, const shader_reader *reader);
 // Allocates the state. Its content is undefined until lbm_reset; an existing state is kept.
 bool lbm_allocate(lbm *l, gpu *g);

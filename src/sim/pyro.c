@@ -2,7 +2,7 @@
 #include "sim/pyro.h"
 #include "base/error.h"
 #include "base/memory.h"
-#include "base/str.h"
+#include "base/swap.h"
 #include "sim/pyro_impl.h"
 #include <string.h>
 
@@ -219,13 +219,9 @@ static bool pyro_compile_kernels(pyro *p, const gpu_profile *device, shader_libr
     return true;
 }
 
-bool pyro_compile(pyro *p, shader_library *library, const shader_reader *reader) {
-    return pyro_compile_kernels(p, gpu_get_profile(NULL), library, reader);
-}
-
 bool pyro_build(pyro *p, gpu *g, shader_library *library, const shader_reader *reader) {
     if (!pyro_compile_kernels(p, gpu_get_profile(g), library, reader)) return false;
-    for (int i = 0; i < PYRO_KERNELS; i++)
+    for (int i = 0; g && i < PYRO_KERNELS; i++)
         if (p->kernels[i].stages && !kernel_build(&p->kernels[i], g)) return false;
     return true;
 }
@@ -426,17 +422,12 @@ static void swap_state(pyro *a, pyro *b) {
     static const pyro_memory state[] = {PYRO_MEM_VELOCITY, PYRO_MEM_VELOCITY + 1, PYRO_MEM_GAS,
                                         PYRO_MEM_GAS + 1,  PYRO_MEM_ACTIVE,       PYRO_MEM_PRESSURE,
                                         PYRO_MEM_SMOKE,    PYRO_MEM_SMOKE + 1};
-    const pyro was = *a;
-    for (size_t i = 0; i < COUNT_OF(state); i++) {
-        a->buffers[state[i]] = b->buffers[state[i]];
-        b->buffers[state[i]] = was.buffers[state[i]];
-    }
-    memcpy(a->looks, b->looks, sizeof a->looks);
-    memcpy(b->looks, was.looks, sizeof b->looks);
-    a->current = b->current, b->current = was.current;
-    a->kept = b->kept, b->kept = was.kept;
-    a->active_known = b->active_known, b->active_known = was.active_known;
-    a->steps = b->steps, b->steps = was.steps;
+    for (size_t i = 0; i < COUNT_OF(state); i++) SWAP(a->buffers[state[i]], b->buffers[state[i]]);
+    SWAP(a->looks, b->looks);
+    SWAP(a->current, b->current);
+    SWAP(a->kept, b->kept);
+    SWAP(a->active_known, b->active_known);
+    SWAP(a->steps, b->steps);
 }
 
 bool pyro_exchange(pyro *a, pyro *b) {

@@ -90,9 +90,8 @@ typedef struct pyro_numbers { // parameters of a step; they may change with each
 pyro *pyro_create(arena *memory, const pyro_desc *desc); // NULL with a message
 const pyro_desc *pyro_get_desc(const pyro *p);           // after pyro_build with its choices
 
-// Compiles everything that pyro_build needs, without a device. `reader` may be NULL.
-bool pyro_compile(pyro *p, shader_library *library, const shader_reader *reader);
-// Builds shaders and pipelines. Any thread. pyro_defines is valid afterwards.
+// Compiles the shaders, and with a device builds their pipelines. Any thread. `reader` may be NULL.
+// pyro_defines is valid afterwards.
 bool pyro_build(pyro *p, gpu *g, shader_library *library, const shader_reader *reader);
 // Allocates the state. Its content is undefined until pyro_reset; an existing state is kept.
 bool pyro_allocate(pyro *p, gpu *g);

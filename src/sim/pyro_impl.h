@@ -178,7 +178,6 @@ bool pyro_project(pyro *p, gpu *g, const pyro_numbers *numbers);
 bool pyro_project_half(pyro *p, gpu *g, const pyro_numbers *half);
 // After the other half. The pressure that the first half found is in the next velocity already.
 bool pyro_project_again(pyro *p, gpu *g, const pyro_numbers *half);
-void pyro_set_level(const pyro *p, kernel *k, uint32_t level);
 
 // pyro_guide.c
 bool pyro_allocate_guide(pyro *p, gpu *g);

@@ -64,7 +64,7 @@ static void set_size(kernel *k, int name, const uint32_t size[3]) {
     kernel_set(k, name, value, sizeof value);
 }
 
-void pyro_set_level(const pyro *p, kernel *k, uint32_t level) {
+static void pyro_set_level(const pyro *p, kernel *k, uint32_t level) {
     const pyro_level *l = &p->levels[level];
     kernel_set(k, N_weights, l->weights, sizeof l->weights);
     set_size(k, N_level_size, l->size);

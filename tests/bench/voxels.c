@@ -178,8 +178,8 @@ int main(int argc, char **argv) {
                         .distances = b.distances};
     voxels *v = voxels_create(&b.memory, &desc);
     gpu_image *image = b.distances ? make_image(&b) : NULL;
-    bool made = v && voxels_compile(v, library, NULL) && voxels_build(v, b.g) &&
-                voxels_allocate(v, b.g) && (image || !b.distances);
+    bool made = v && voxels_build(v, b.g, library, NULL) && voxels_allocate(v, b.g) &&
+                (image || !b.distances);
     int status = made ? measure(&b, v, image) : fail("voxels");
     gpu_image_destroy(b.g, image);
     voxels_destroy(v, b.g);

@@ -116,7 +116,7 @@ static void mistake_in_a_users_file_is_named_with_its_line(void **state) {
     pass *p = world_add(&w, NULL, "slice.comp", "slice");
     gpu_test_ok(pass_set_field(p, "value", make_user(&w, &broken, NULL, NULL)));
     gpu_test_ok(pass_declare(p));
-    assert_false(pass_check(p));
+    assert_false(pass_build(p));
     assert_non_null(strstr(err_get(), "broken.glsl:3: "));
     assert_non_null(strstr(err_get(), "pp"));
     world_close(&w);

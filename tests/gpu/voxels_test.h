@@ -182,8 +182,7 @@ static inline double winding_at(const double3 *corners, size_t count, double3 p)
 static inline voxels *make_voxels(voxels_world *w, const voxels_desc *desc) {
     voxels *v = voxels_create(&w->memory, desc);
     gpu_test_ok(v);
-    gpu_test_ok(voxels_compile(v, w->library, NULL));
-    gpu_test_ok(voxels_build(v, w->device));
+    gpu_test_ok(voxels_build(v, w->device, w->library, NULL));
     gpu_test_ok(voxels_allocate(v, w->device));
     return v;
 }

@@ -2,6 +2,7 @@
 #include "base/error.h"
 #include "base/memory.h"
 #include "base/str.h"
+#include "base/swap.h"
 #include "pass/air/air_parts.h"
 #include <math.h>
 #include <string.h>
@@ -33,10 +34,8 @@ static bool same_place(const air *a, const air *b) {
 static bool exchange_grids(field_grid *grid, field_grid *other) {
     air *a = (air *)grid, *b = (air *)other;
     if (a->stopped || b->stopped || !same_place(a, b) || !a->kind->exchange(a, b)) return false;
-    air_exchange_templates(a, b);
-    bool fresh = a->fresh;
-    a->fresh = b->fresh;
-    b->fresh = fresh;
+    template_set_exchange(&a->templates.set, &b->templates.set);
+    SWAP(a->fresh, b->fresh);
     a->shown_steps = b->shown_steps = UINT64_MAX;
     return true;
 }

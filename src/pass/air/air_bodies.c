@@ -1,5 +1,4 @@
 // Meshes in simulated air: those of sources and those that it flows around, each as cells.
-#include "base/error.h"
 #include "base/memory.h"
 #include "pass/air/air_parts.h"
 #include <math.h>
@@ -28,13 +27,9 @@ static bool bodies_make(air *a, air_meshes *m) {
     return !m->count || m->cells;
 }
 
-static bool bodies_compile(air *a, air_meshes *m) {
-    const pass_host *host = a->pass->host;
-    return !m->cells || voxels_compile(m->cells, host->library, host->reader);
-}
-
 static bool bodies_build(air *a, air_meshes *m) {
-    return bodies_compile(a, m) && (!m->cells || voxels_build(m->cells, a->pass->host->device));
+    const pass_host *host = a->pass->host;
+    return !m->cells || voxels_build(m->cells, host->device, host->library, host->reader);
 }
 
 static bool bodies_allocate(air *a, air_meshes *m) {
@@ -94,10 +89,6 @@ static bool for_each(air *a, bool (*work)(air *a, air_meshes *m)) {
 
 bool air_make_bodies(air *a) {
     return for_each(a, bodies_make);
-}
-
-bool air_check_bodies(air *a) {
-    return for_each(a, bodies_compile);
 }
 
 bool air_build_bodies(air *a) {

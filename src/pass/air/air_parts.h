@@ -158,8 +158,6 @@ int64_t air_most(const pass *p);
 double air_reached(const pass *p);
 void air_restart(pass *p);
 bool air_advance(pass *p); // to the host's time, as far as one submit goes
-// How the two kept states are mixed for the host's time.
-double air_blend(const air *a, double time);
 double air_work(const pass *p);
 // Whether the grid is that of the host's time already. If not, it is about to be.
 bool air_is_shown(pass *p, air *a);
@@ -183,7 +181,6 @@ bool air_has_outflow(const air *a); // templates of pressure
 bool air_allocate_templates(air *a);
 void air_list_templates(const air *a, budget_list *out); // their memory
 bool air_run_templates(air *a);                          // before a step
-void air_exchange_templates(air *a, air *other);
 void air_destroy_templates(air *a);
 void air_save_templates(const air *a, struct checkpoint_list *out);
 bool air_load_templates(air *a, struct checkpoint *from);
@@ -232,7 +229,6 @@ bool air_source_cells(const air *a, const pass *p, double end, air_cells *out, u
 air_meshes *air_add_giver(air *a); // until the next one is added
 void air_add_body(air_meshes *m, const scene_mesh *mesh, voxels_rule rule);
 bool air_make_bodies(air *a); // when all are known
-bool air_check_bodies(air *a);
 bool air_build_bodies(air *a);
 bool air_allocate_bodies(air *a);
 void air_list_bodies(const air *a, budget_list *out); // their memory

@@ -6,7 +6,6 @@
 // it is what the solvers take away.
 #include "base/error.h"
 #include "base/hash.h"
-#include "base/memory.h"
 #include "pass/air/air_parts.h"
 #include "sim/checkpoint.h"
 #include "sim/lbm.h"
@@ -56,11 +55,6 @@ bool pass_air_add_templates(pass *p, pass *group, const picture *image, uint32_t
         return false;
     group->runs_in = p;
     return template_set_add(&a->templates.set, a, group, image, count, "");
-}
-
-static bool air_templates_declare(pass *p) {
-    (void)p;
-    return true; // the air runs it
 }
 
 // ---- building ---------------------------------------------------------------------------------
@@ -194,10 +188,6 @@ bool air_run_templates(air *a) {
 
 // ---- other states -----------------------------------------------------------------------------
 
-void air_exchange_templates(air *a, air *other) {
-    template_set_exchange(&a->templates.set, &other->templates.set);
-}
-
 static checkpoint_part part_of(const air *a, arena *memory) {
     gpu_buffer *buffer = a->templates.set.instances;
     return (checkpoint_part){.name = arena_format(memory, "%s/templates", a->pass->label),
@@ -226,7 +216,7 @@ bool air_load_templates(air *a, checkpoint *from) {
     {                                                                                              \
         .name = #KIND "_templates", .constructed = true,                                           \
         .shader = "pass/air/" #KIND "_templates.comp", .names = {air_names, AIR_NAME_COUNT},       \
-        .solver = &KIND##_kernel_table, .unscaled = true, .declare = air_templates_declare,        \
+        .solver = &KIND##_kernel_table, .unscaled = true, .runs_inside = true,                     \
         .defines = air_templates_defines, .update = air_templates_update,                          \
     }
 

@@ -49,7 +49,8 @@ double air_reached(const pass *p) {
     return pass_steps_reached(&clock, done(a));
 }
 
-double air_blend(const air *a, double time) {
+// How the two kept states are mixed for a time.
+static double air_blend(const air *a, double time) {
     pass_steps clock = clock_of(a);
     return pass_steps_blend(&clock, done(a), time);
 }

@@ -1,6 +1,5 @@
 // Life of the pass type `lbm`: what it is made of is known when the script has run.
 #include "base/error.h"
-#include "base/memory.h"
 #include "pass/air/lbm_parts.h"
 #include <math.h>
 #include <string.h>
@@ -77,7 +76,6 @@ const pass_type lbm_type = {
     .declare = air_declare,
     .complete = lbm_air_complete,
     .defines = air_defines,
-    .check = lbm_air_check,
     .build = lbm_air_build,
     .allocate = lbm_air_allocate,
     .list_memory = lbm_air_list_memory,

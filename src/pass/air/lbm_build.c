@@ -2,16 +2,6 @@
 #include "base/error.h"
 #include "pass/air/lbm_parts.h"
 
-bool lbm_air_check(pass *p) {
-    lbm_air *a = lbm_air_of(p);
-    const pass_host *host = p->host;
-    if (!pass_compile_kernels(p)) return false;
-    if (!lbm_compile(a->solver, host->library, host->reader) ||
-        !lbm_guard_compile(a->guard, host->library, host->reader) || !air_check_bodies(&a->air))
-        return err_prefix("%s: ", p->label);
-    return air_each_source(&a->air, pass_check_part);
-}
-
 bool lbm_air_build(pass *p) {
     lbm_air *a = lbm_air_of(p);
     const pass_host *host = p->host;

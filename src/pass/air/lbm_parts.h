@@ -33,7 +33,6 @@ bool lbm_air_check_options(const pass *p);
 extern const air_kind lbm_kind;
 
 // lbm_build.c
-bool lbm_air_check(pass *p);
 bool lbm_air_build(pass *p);
 bool lbm_air_allocate(pass *p);
 void lbm_air_list_memory(const pass *p, budget_list *out);

@@ -84,15 +84,6 @@ static bool pyro_air_defines(pass *p, size_t index, pass_defines *out) {
 
 // ---- building ---------------------------------------------------------------------------------
 
-static bool pyro_air_check(pass *p) {
-    pyro_air *a = pyro_air_of(p);
-    const pass_host *host = p->host;
-    if (!pass_compile_kernels(p)) return false;
-    if (!pyro_compile(a->solver, host->library, host->reader) || !air_check_bodies(&a->air))
-        return err_prefix("%s: ", p->label);
-    return air_each_source(&a->air, pass_check_part);
-}
-
 static bool pyro_air_build(pass *p) {
     pyro_air *a = pyro_air_of(p);
     const pass_host *host = p->host;
@@ -193,7 +184,6 @@ const pass_type pyro_type = {
     .declare = air_declare,
     .complete = pyro_air_complete,
     .defines = pyro_air_defines,
-    .check = pyro_air_check,
     .build = pyro_air_build,
     .allocate = pyro_air_allocate,
     .list_memory = pyro_air_list_memory,

@@ -14,8 +14,7 @@ enum { MARGIN = 2, MOST_CELLS = 1 << 27 }; // cells around meshes; in all
 #define NAMES(NAME)                                                                                \
     NAME(rule), NAME(inside), NAME(distance), NAME(velocity), NAME(size), NAME(VoxelIds),          \
         NAME(VoxelMotions)
-enum { NAMES(KERNEL_NAME_ID) };
-static const char *const names[] = {NAMES(KERNEL_NAME_TEXT)};
+KERNEL_NAMES(NAMES);
 static const pass_kernel kernels[1];
 
 typedef struct voxels_pass {
@@ -218,14 +217,10 @@ static bool voxels_pass_declare(pass *p) {
            add_image(p, s, N_velocity, PASS_VOXELS_VELOCITY) && pass_add_to_graph(p);
 }
 
-static bool voxels_pass_check(pass *p) {
-    return pass_compile_kernels(p) &&
-           voxels_compile(state_of(p)->cells, p->host->library, p->host->reader);
-}
-
 static bool voxels_pass_build(pass *p) {
-    return voxels_compile(state_of(p)->cells, p->host->library, p->host->reader) &&
-           pass_build_kernels(p) && voxels_build(state_of(p)->cells, p->host->device);
+    const pass_host *host = p->host;
+    return pass_build_kernels(p) &&
+           voxels_build(state_of(p)->cells, host->device, host->library, host->reader);
 }
 
 static bool voxels_pass_allocate(pass *p) {
@@ -306,7 +301,6 @@ const pass_type voxels_type = {
     .names = {names, COUNT_OF(names)},
     .meshes = PASS_USES_MESHES,
     .declare = voxels_pass_declare,
-    .check = voxels_pass_check,
     .build = voxels_pass_build,
     .allocate = voxels_pass_allocate,
     .list_memory = voxels_pass_list_memory,

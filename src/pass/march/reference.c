@@ -21,8 +21,7 @@ static const pass_kernel kernels[REFERENCE_KERNELS] = {
 
 #define NAMES(NAME)                                                                                \
     NAME(majorants), NAME(color), NAME(samples), NAME(executed), NAME(paths), NAME(part)
-enum { NAMES(KERNEL_NAME_ID) };
-static const char *const names[] = {NAMES(KERNEL_NAME_TEXT)};
+KERNEL_NAMES(NAMES);
 
 typedef struct reference_state {
     hash128 seen;     // of all that the picture depends on, in the last execution
@@ -115,7 +114,7 @@ static bool reference_update(pass *p) {
 static void count_execution(pass *p, const kernel *k) {
     reference_state *s = p->state;
     hash128 seen = hash_inputs(p, k);
-    bool same = !p->host->fresh && seen.low == s->seen.low && seen.high == s->seen.high;
+    bool same = !p->host->fresh && hash_equal(seen, s->seen);
     s->executed = same ? s->executed + 1 : 0;
     s->samples = (uint32_t)(s->executed + 1) * (uint32_t)pass_value(p, N_samples);
     s->seen = seen;

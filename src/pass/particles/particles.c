@@ -147,7 +147,7 @@ static void particles_destroy(pass *p) {
     particles_state *s = particles_of(p);
     if (!s) return;
     gpu *device = p->host->device;
-    particles_destroy_lost(p, s);
+    kernel_readback_destroy(&s->lost.count, p->host->device);
     gpu_buffer *const all[] = {s->buffers.positions[0],
                                s->buffers.positions[1],
                                s->buffers.velocities[0],

@@ -6,10 +6,6 @@ bool particles_make_lost(pass *p, particles_state *s) {
            kernel_readback_make(&s->lost.count, p->host->device, "births without a place", 1);
 }
 
-void particles_destroy_lost(pass *p, particles_state *s) {
-    kernel_readback_destroy(&s->lost.count, p->host->device);
-}
-
 bool particles_begin_lost(pass *p, particles_state *s) {
     static const float zero[4] = {0};
     s->lost.births = 0;

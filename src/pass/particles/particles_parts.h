@@ -112,7 +112,6 @@ bool particles_advance(pass *p);           // to the host's time, as far as one 
 
 // particles_lost.c
 bool particles_make_lost(pass *p, particles_state *s);
-void particles_destroy_lost(pass *p, particles_state *s);
 bool particles_begin_lost(pass *p, particles_state *s); // around the steps of a record
 bool particles_end_lost(pass *p, particles_state *s);
 double particles_lost_share(const pass *p); // of the births of a frame some frames ago

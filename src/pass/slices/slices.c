@@ -2,8 +2,8 @@
 #include "pass/slices/slices.h"
 #include "base/error.h"
 #include "base/memory.h"
+#include "base/swap.h"
 #include "pass/slices/slices_templates_parts.h"
-#include <math.h>
 #include <string.h>
 
 const char *const slices_names[SLICES_NAME_COUNT] = {SLICES_NAMES(KERNEL_NAME_TEXT)};
@@ -23,10 +23,8 @@ static bool exchange_grids(field_grid *grid, field_grid *other) {
     slices_flow *a = (slices_flow *)grid, *b = (slices_flow *)other;
     if (!a->solver || !b->solver || !same_flow(a, b) || !flow_exchange(a->solver, b->solver))
         return false;
-    if (a->templates && b->templates) a->templates->exchange(a, b);
-    bool fresh = a->fresh;
-    a->fresh = b->fresh;
-    b->fresh = fresh;
+    if (a->templates && b->templates) template_set_exchange(&a->templates->set, &b->templates->set);
+    SWAP(a->fresh, b->fresh);
     slices_forget(a);
     slices_forget(b);
     return true;
@@ -167,7 +165,6 @@ static flow_desc structure_of(const pass *p, const slices_flow *f) {
 static bool slices_complete(pass *p) {
     slices_flow *f = slices_of(p);
     if (p->host->interaction) slices_take_hand(p);
-    if (f->templates && f->templates->complete && !f->templates->complete(f)) return false;
     flow_desc structure = structure_of(p, f);
     f->solver = flow_create(p->host->memory, &structure);
     if (!f->solver) return err_prefix("%s: ", p->label);
@@ -205,7 +202,6 @@ const pass_type slices_type = {
     .declare = slices_declare,
     .complete = slices_complete,
     .defines = slices_defines,
-    .check = slices_check,
     .build = slices_build,
     .allocate = slices_allocate,
     .list_memory = slices_list_memory,

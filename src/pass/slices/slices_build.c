@@ -1,24 +1,12 @@
 // Building the pass type `slices`: its shader, its solver's, and those of the parts that it runs.
 #include "base/error.h"
 #include "base/memory.h"
-#include "pass/slices/slices_parts.h"
+#include "pass/slices/slices_templates_parts.h"
 
 static bool each_part(const slices_flow *f, bool (*call)(pass *part)) {
     for (size_t i = 0; i < f->part_count; i++)
-        if (!slices_is_template(f->parts[i]) && !call(f->parts[i])) return false;
+        if (!call(f->parts[i])) return false;
     return true;
-}
-
-static bool extra(slices_flow *f, bool (*call)(slices_flow *f)) {
-    return !call || call(f);
-}
-
-bool slices_check(pass *p) {
-    slices_flow *f = slices_of(p);
-    const pass_host *host = p->host;
-    return (flow_compile(f->solver, host->library, host->reader) || err_prefix("%s: ", p->label)) &&
-           pass_compile_kernels(p) && each_part(f, pass_check_part) &&
-           (!f->templates || extra(f, f->templates->check));
 }
 
 bool slices_build(pass *p) {
@@ -26,26 +14,25 @@ bool slices_build(pass *p) {
     const pass_host *host = p->host;
     if (!flow_build(f->solver, host->device, host->library, host->reader))
         return err_prefix("%s: ", p->label);
-    return pass_build_kernels(p) && each_part(f, pass_build_part) &&
-           (!f->templates || extra(f, f->templates->build));
+    return pass_build_kernels(p) && each_part(f, pass_build_part);
 }
 
 bool slices_allocate(pass *p) {
     slices_flow *f = slices_of(p);
     return (flow_allocate(f->solver, p->host->device) || err_prefix("%s: ", p->label)) &&
-           (!f->templates || extra(f, f->templates->allocate));
+           (!f->templates || slices_templates_allocate(f));
 }
 
 void slices_list_memory(const pass *p, budget_list *out) {
     const slices_flow *f = slices_of(p);
     flow_list_memory(f->solver, out);
-    if (f->templates) f->templates->list_memory(f, out);
+    if (f->templates) slices_templates_list_memory(f, out);
 }
 
 void slices_destroy(pass *p) {
     slices_flow *f = slices_of(p);
     if (!f) return;
-    if (f->templates && f->templates->destroy) f->templates->destroy(f);
+    if (f->templates) slices_templates_destroy(f);
     if (f->solver) flow_destroy(f->solver, p->host->device);
     mem_free(f->parts);
 }

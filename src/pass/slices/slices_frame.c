@@ -16,10 +16,9 @@ bool slices_rehearse(pass *p) {
     if (!slices_numbers(p, &numbers)) return false;
     for (size_t i = 0; i < f->part_count; i++) {
         pass *part = f->parts[i];
-        if (!slices_is_template(part) && !pass_rehearse(part))
-            return err_prefix("%s: ", part->label);
+        if (!pass_rehearse(part)) return err_prefix("%s: ", part->label);
     }
-    return !f->templates || !f->templates->rehearse || f->templates->rehearse(f);
+    return true;
 }
 
 static void note_content(slices_flow *f) {

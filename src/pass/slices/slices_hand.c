@@ -31,7 +31,7 @@ static uint32_t find_slot(const template_hand *h) {
 }
 
 bool slices_put(pass *p, const slices_hand *hand) {
-    slices_templates *t = slices_templates_of(slices_of(p));
+    slices_templates *t = slices_of(p)->templates;
     if (!t || !t->hand.taken || !t->set.tiles)
         return err_set("%s: it takes no templates by hand", p->label);
     template_hand *h = &t->hand;
@@ -66,7 +66,7 @@ static void fill_one(const slices_flow *f, const slices_hand *hand, uint32_t til
 }
 
 void slices_hand_set(slices_flow *f, kernel *k) {
-    slices_templates *t = slices_templates_of(f);
+    slices_templates *t = f->templates;
     float values[4 * VALUES * SLICES_HAND_MOST] = {0};
     uint32_t count = 0;
     for (uint32_t i = 0; i < SLICES_HAND_MOST; i++) {

@@ -70,11 +70,6 @@ static bool part_defines(pass *p, size_t index, pass_defines *out) {
     return true;
 }
 
-static bool part_declare(pass *p) {
-    (void)p;
-    return true;
-}
-
 static bool part_allocate(pass *p) {
     part_state *s = p->state;
     if (!s || !s->painted || s->image) return true;
@@ -163,9 +158,9 @@ static const pass_kernel kernels[1];
     {                                                                                              \
         .name = NAME, .shader = "pass/slices/" NAME ".comp", .kernels = kernels,                   \
         .kernel_count = 1, .names = {slices_names, SLICES_NAME_COUNT},                             \
-        .solver = &flow_kernel_table, .unscaled = true, .constructed = true,                       \
-        .declare = part_declare, .defines = part_defines, .allocate = part_allocate,               \
-        .update = part_update, .destroy = part_destroy                                             \
+        .solver = &flow_kernel_table, .unscaled = true, .constructed = true, .runs_inside = true,  \
+        .defines = part_defines, .allocate = part_allocate, .update = part_update,                 \
+        .destroy = part_destroy                                                                    \
     }
 
 const pass_type slices_inflow_type = PART("slices_inflow");

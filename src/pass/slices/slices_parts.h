@@ -6,26 +6,7 @@
 #include "sim/flow.h"
 
 typedef struct slices_flow slices_flow;
-
-// What a file of its own adds to the flow: templates (slices_templates.c). Called by the hooks of
-// the pass of the same name; NULL: nothing to do.
-typedef struct slices_extra {
-    bool (*complete)(slices_flow *f); // all has been declared; the solver is made next
-    bool (*check)(slices_flow *f);    // the solver has been compiled
-    bool (*build)(slices_flow *f);    // the solver has been built
-    bool (*allocate)(slices_flow *f);
-    void (*list_memory)(const slices_flow *f, budget_list *out);
-    bool (*rehearse)(slices_flow *f);
-    void (*restart)(slices_flow *f); // the flow begins anew
-    void (*loaded)(slices_flow *f);  // slices_templates_buffer holds what a checkpoint did
-    // Both have templates, and the solvers have been exchanged: those that match are, too.
-    void (*exchange)(slices_flow *f, slices_flow *other);
-    // Before a step, when inflow and forces are in the solver's buffers, which are written anew for
-    // every step then. The host's context has the time of the step, flow_steps is its number, and
-    // f->clock.step how long it takes.
-    bool (*run)(slices_flow *f);
-    void (*destroy)(slices_flow *f);
-} slices_extra;
+typedef struct slices_templates slices_templates;
 
 enum { SLICES_SHOW, SLICES_DRAW, SLICES_KERNELS }; // of the pass; those of steps are the solver's
 
@@ -62,8 +43,7 @@ struct slices_flow {
     size_t part_count, part_capacity;
     flow *solver; // after pass_complete
 
-    const slices_extra *templates; // NULL: there are none
-    void *templates_state;         // theirs
+    slices_templates *templates; // NULL: there are none
 
     const char *labels[SLICES_LABELS]; // of times
     bool fresh;                        // begins anew with the next record
@@ -80,7 +60,7 @@ static inline slices_flow *slices_of(const pass *p) {
 }
 
 // slices_part.c: a pass that runs in the slices' own, after what its fields sample. A group of
-// templates too, but all else that is to do with it is for f->templates.
+// templates too, but what it does in a step is in slices_templates.c.
 void slices_add_part(slices_flow *f, pass *part);
 bool slices_is_obstacle(const pass *part);
 bool slices_is_template(const pass *part);
@@ -94,7 +74,6 @@ void slices_save(const pass *p, struct checkpoint_list *out);
 bool slices_load(pass *p, struct checkpoint *from);
 
 // slices_build.c
-bool slices_check(pass *p);
 bool slices_build(pass *p);
 bool slices_allocate(pass *p);
 void slices_list_memory(const pass *p, budget_list *out);

@@ -3,28 +3,24 @@
 // device, and depends on seeds and steps alone: what is drawn, and how often, changes nothing.
 #include "base/error.h"
 #include "base/hash.h"
-#include "base/memory.h"
 #include "pass/slices/slices_templates_parts.h"
 
-static const slices_extra hooks;
 enum { ROWS = 4 }; // of an instance (shaders/pass/slices/templates.glsl)
 
 slices_templates *slices_templates_make(slices_flow *f) {
-    if (!f->templates_state)
-        f->templates_state = arena_alloc(f->pass->host->memory, sizeof(slices_templates));
-    f->templates = &hooks;
-    return f->templates_state;
+    if (!f->templates) f->templates = arena_alloc(f->pass->host->memory, sizeof *f->templates);
+    return f->templates;
 }
 
 gpu_buffer *slices_templates_buffer(const pass *p) {
-    const slices_templates *t = slices_templates_of(slices_of(p));
+    const slices_templates *t = slices_of(p)->templates;
     return t && t->set.total ? t->set.instances : NULL;
 }
 
 // ---- declaring --------------------------------------------------------------------------------
 
 static bool has_kind(const pass *p, size_t kind) {
-    const slices_templates *t = slices_templates_of(slices_of(p));
+    const slices_templates *t = slices_of(p)->templates;
     return t && (t->hand.taken || template_set_has(&t->set, N_kind, kind));
 }
 
@@ -55,12 +51,12 @@ static uint32_t tile_side(const slices_flow *f) {
 static uint64_t mask_bytes(const slices_flow *f) {
     const uint32_t *size = f->desc.size, side = tile_side(f);
     const uint64_t tiles = (uint64_t)((size[0] + side - 1) / side) * ((size[1] + side - 1) / side);
-    return template_mask_bytes(&slices_templates_of(f)->set, tiles * f->desc.count);
+    return template_mask_bytes(&f->templates->set, tiles * f->desc.count);
 }
 
 void slices_templates_define(const slices_flow *f, pass_defines *out) {
     out->count += flow_defines(f->solver, out->items + out->count);
-    pass_define_number(f->pass, out, "TEMPLATES_TOTAL", slices_templates_of(f)->set.total);
+    pass_define_number(f->pass, out, "TEMPLATES_TOTAL", f->templates->set.total);
     pass_define_number(f->pass, out, "TEMPLATES_TILE", tile_side(f));
 }
 
@@ -71,11 +67,6 @@ static bool defines_of_group(pass *p, size_t index, pass_defines *out) {
     (void)index;
     slices_templates_define(g->owner, out);
     return true;
-}
-
-static bool declare_group(pass *p) {
-    (void)p;
-    return true; // the flow runs it
 }
 
 // Where the region may be, in widths of a slice.
@@ -101,7 +92,7 @@ static bool update_group(pass *p) {
     pass_set_int(p, N_key, (int32_t)(uint32_t)hash64(seeds, sizeof seeds));
     pass_set_int(p, N_first, (int32_t)g->first);
     pass_set_int(p, N_count, (int32_t)g->count);
-    pass_set_int(p, N_parity, (int32_t)slices_templates_of(f)->set.parity);
+    pass_set_int(p, N_parity, (int32_t)f->templates->set.parity);
     pass_set_float(p, N_tile, (float)g->index);
     pass_set_float(p, N_time_step, (float)f->clock.step);
     pass_set(p, N_box_min, low, sizeof low);
@@ -109,34 +100,25 @@ static bool update_group(pass *p) {
     return true;
 }
 
-// ---- building: of all -------------------------------------------------------------------------
-
-static bool templates_check(slices_flow *f) {
-    return template_set_each(&slices_templates_of(f)->set, pass_check_part);
-}
-
-static bool templates_build(slices_flow *f) {
-    return template_set_each(&slices_templates_of(f)->set, pass_build_part);
-}
+// ---- on the device ----------------------------------------------------------------------------
 
 static uint64_t instance_bytes(const slices_flow *f) {
-    return template_instance_bytes(&slices_templates_of(f)->set, ROWS, f->desc.count);
+    return template_instance_bytes(&f->templates->set, ROWS, f->desc.count);
 }
 
-static void templates_list_memory(const slices_flow *f, budget_list *out) {
-    template_set_list_memory(&slices_templates_of(f)->set, instance_bytes(f), mask_bytes(f), out);
+void slices_templates_list_memory(const slices_flow *f, budget_list *out) {
+    template_set_list_memory(&f->templates->set, instance_bytes(f), mask_bytes(f), out);
 }
 
-static bool templates_allocate(slices_flow *f) {
+bool slices_templates_allocate(slices_flow *f) {
     return slices_templates_make_images(f) &&
-           template_set_allocate(&slices_templates_of(f)->set, f->pass->host->device,
-                                 instance_bytes(f), mask_bytes(f));
+           template_set_allocate(&f->templates->set, f->pass->host->device, instance_bytes(f),
+                                 mask_bytes(f));
 }
 
-static void templates_destroy(slices_flow *f) {
-    slices_templates *t = slices_templates_of(f);
-    template_set_destroy(&t->set, f->pass->host->device);
-    *t = (slices_templates){0};
+void slices_templates_destroy(slices_flow *f) {
+    template_set_destroy(&f->templates->set, f->pass->host->device);
+    *f->templates = (slices_templates){0};
 }
 
 // ---- a step -----------------------------------------------------------------------------------
@@ -149,40 +131,11 @@ static bool run_group(pass *p) {
            err_prefix("%s: ", p->label);
 }
 
-static bool templates_run(slices_flow *f) {
-    template_set *t = &slices_templates_of(f)->set;
+bool slices_templates_run(slices_flow *f) {
+    template_set *t = &f->templates->set;
     template_set_begin(t, f->pass->host->device);
     return template_set_each(t, run_group) && slices_templates_draw(f);
 }
-
-static void templates_restart(slices_flow *f) {
-    slices_templates_of(f)->set.fresh = true;
-}
-
-static void templates_loaded(slices_flow *f) {
-    slices_templates_of(f)->set.fresh = false;
-}
-
-static void templates_exchange(slices_flow *f, slices_flow *other) {
-    template_set_exchange(&slices_templates_of(f)->set, &slices_templates_of(other)->set);
-}
-
-static bool templates_rehearse(slices_flow *f) {
-    return template_set_each(&slices_templates_of(f)->set, pass_rehearse);
-}
-
-static const slices_extra hooks = {
-    .check = templates_check,
-    .build = templates_build,
-    .allocate = templates_allocate,
-    .list_memory = templates_list_memory,
-    .rehearse = templates_rehearse,
-    .restart = templates_restart,
-    .loaded = templates_loaded,
-    .exchange = templates_exchange,
-    .run = templates_run,
-    .destroy = templates_destroy,
-};
 
 static const pass_kernel kernel_of_group = {0};
 
@@ -195,7 +148,7 @@ const pass_type slices_templates_type = {
     .names = {slices_names, SLICES_NAME_COUNT},
     .solver = &flow_kernel_table,
     .unscaled = true,
-    .declare = declare_group,
+    .runs_inside = true,
     .defines = defines_of_group,
     .update = update_group,
 };

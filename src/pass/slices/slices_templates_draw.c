@@ -9,7 +9,7 @@ static uint32_t cells_of(const slices_flow *f) {
 // ---- building ---------------------------------------------------------------------------------
 
 void slices_templates_define_draw(const slices_flow *f, pass_defines *out) {
-    const slices_templates *t = slices_templates_of(f);
+    const slices_templates *t = f->templates;
     slices_templates_define(f, out);
     pass_define_number(f->pass, out, "TEMPLATES_CELLS", cells_of(f));
     pass_define_number(f->pass, out, "HAND", t->hand.taken ? SLICES_HAND_MOST : 0);
@@ -20,7 +20,7 @@ void slices_templates_define_draw(const slices_flow *f, pass_defines *out) {
 // ---- pictures ---------------------------------------------------------------------------------
 
 bool slices_templates_make_images(slices_flow *f) {
-    slices_templates *t = slices_templates_of(f);
+    slices_templates *t = f->templates;
     t->set.more = t->hand.taken ? SLICES_HAND_MOST : 0;
     return template_set_make_images(&t->set, f->pass->host->device, slices_hand_tile, t);
 }
@@ -28,7 +28,7 @@ bool slices_templates_make_images(slices_flow *f) {
 // ---- a step -----------------------------------------------------------------------------------
 
 kernel *slices_templates_use(const slices_flow *f, pass *p, size_t index) {
-    const slices_templates *t = slices_templates_of(f);
+    const slices_templates *t = f->templates;
     kernel *k = pass_use(p, index);
     if (!k) return NULL;
     flow_bind(f->solver, k, pass_solver_places(p, index));
@@ -46,7 +46,7 @@ static bool has_sources(const slices_flow *f) {
 }
 
 bool slices_templates_draw(slices_flow *f) {
-    slices_templates *t = slices_templates_of(f);
+    slices_templates *t = f->templates;
     const uint32_t *size = f->desc.size, cells = cells_of(f);
     gpu *device = f->pass->host->device;
     if (t->repainted && !template_set_write_images(&t->set, device)) return false;

@@ -10,16 +10,21 @@ typedef struct template_hand { // templates that are put by hand; zero: none may
     const picture *images[SLICES_HAND_MOST]; // of the tiles
 } template_hand;
 
-typedef struct slices_templates {
+struct slices_templates {
     template_set set; // its tiles are those of groups, then those by hand
     template_hand hand;
     bool repainted; // tiles are others than those of the image
-} slices_templates;
+};
 
-static inline slices_templates *slices_templates_of(const slices_flow *f) {
-    return f->templates_state;
-}
 slices_templates *slices_templates_make(slices_flow *f); // again: those that are there
+
+// Of a flow that has templates.
+bool slices_templates_allocate(slices_flow *f);
+void slices_templates_list_memory(const slices_flow *f, budget_list *out);
+void slices_templates_destroy(slices_flow *f);
+// Before a step, when inflow and forces are in the solver's buffers, which are written anew for
+// every step then. The host's context has the time of the step.
+bool slices_templates_run(slices_flow *f);
 
 void slices_templates_define(const slices_flow *f, pass_defines *out); // of all their shaders
 

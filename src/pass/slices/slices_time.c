@@ -1,7 +1,5 @@
 // The clock of slices (pass/steps.h), and their steps.
-#include "base/memory.h"
-#include "pass/slices/slices_parts.h"
-#include <math.h>
+#include "pass/slices/slices_templates_parts.h"
 
 // Updates of a lattice that one of a cell is worth: the pressure is solved for in several sweeps.
 static const double dearer = 12;
@@ -38,7 +36,7 @@ void slices_restart(pass *p) {
     f->fresh = true;
     f->reported = false;
     slices_forget(f);
-    if (f->templates && f->templates->restart) f->templates->restart(f);
+    if (f->templates) f->templates->set.fresh = true;
 }
 
 int64_t slices_most(const pass *p) {
@@ -58,7 +56,7 @@ static bool step(pass *p, slices_flow *f, bool keep, bool apart) {
     if (apart) gpu_pass_next(device, f->labels[SLICES_SOURCES]);
     if (!slices_run_parts(f, true) || !slices_run_parts(f, false)) return false;
     if (apart) gpu_pass_next(device, f->labels[SLICES_TEMPLATES]);
-    if (f->templates && !f->templates->run(f)) return false;
+    if (f->templates && !slices_templates_run(f)) return false;
     if (apart) gpu_pass_next(device, f->labels[SLICES_STEP]);
     return flow_step(f->solver, device, &numbers, keep);
 }
