@@ -45,9 +45,9 @@ bool effect_tick(effect *e) {
     for (size_t i = 0; i < e->clock_count; i++) {
         effect_clock *c = &e->clocks[i];
         double speed = 0;
-        if (k > 0 && !value_at(e, c->speed, ((double)k - 0.5) / e->fps, &speed)) return false;
+        if (k > 0 && !value_at(e, c->speed, ((double)k - 0.5) / e->facts.fps, &speed)) return false;
         MEM_RESERVE(c->played, k + 1, c->capacity);
-        c->played[k] = k > 0 ? c->played[k - 1] + speed / e->fps : 0;
+        c->played[k] = k > 0 ? c->played[k - 1] + speed / e->facts.fps : 0;
     }
     e->clocked++;
     return true;
@@ -56,12 +56,12 @@ bool effect_tick(effect *e) {
 bool effect_aim_clocks(effect *e, double frame, double *next) {
     *next = (double)INFINITY;
     if (e->clock_count == 0) return true;
-    double whole = fmax(floor(frame - e->first + 1e-6), 0);
+    double whole = fmax(floor(frame - e->facts.first + 1e-6), 0);
     if (whole > MOST_FRAMES)
         return err_set("frame %g: a speed that moves is added up over at most %d frames", frame,
                        MOST_FRAMES);
     if (whole + 1 < (double)e->clocked) effect_restart_clocks(e);
-    if ((double)e->clocked <= whole) *next = e->first + (double)e->clocked;
+    if ((double)e->clocked <= whole) *next = e->facts.first + (double)e->clocked;
     return true;
 }
 
@@ -73,12 +73,12 @@ static bool played_at(const effect *e, const effect_clock *c, double now, double
     size_t k = 0;
     *out = 0;
     if (e->clocked > 0) {
-        k = (size_t)fmin(floor(fmax(from, 0) * e->fps + 1e-6), (double)(e->clocked - 1));
+        k = (size_t)fmin(floor(fmax(from, 0) * e->facts.fps + 1e-6), (double)(e->clocked - 1));
         *out = c->played[k];
     }
-    double at = (double)k / e->fps;
+    double at = (double)k / e->facts.fps;
     if (k + 1 < e->clocked) {
-        *out += (c->played[k + 1] - c->played[k]) * (time - at) * e->fps;
+        *out += (c->played[k + 1] - c->played[k]) * (time - at) * e->facts.fps;
         return true;
     }
     if (!value_at(e, c->speed, 0.5 * (at + fmax(from, at)), &speed)) return false;

@@ -15,32 +15,45 @@ static int rank(effect_control_kind kind) {
     return kind > EFFECT_CONTROL_UNIFORM ? EFFECT_CONTROL_UNIFORM : (int)kind;
 }
 
+static void param_reset(effect *e, control *c) {
+    effect_set_value(e, c->face.index, e->params[c->face.index]->desc.value);
+    effect_forget_moved(e, c->face.index);
+}
+
+static void slot_reset(effect *e, control *c) {
+    (void)e;
+    *c->slot = c->original;
+}
+
+static void number_reset(effect *e, control *c) {
+    (void)e;
+    memcpy(c->nodes[0]->value, c->original->value, sizeof c->original->value);
+}
+
+typedef struct control_kind {
+    bool (*set)(effect *e, control *c, const char *text);
+    void (*print)(const effect *e, const control *c, strbuf *out);
+    void (*reset)(effect *e, control *c); // NULL: it is structure
+} control_kind;
+
+static const control_kind kinds[] = {
+    [EFFECT_CONTROL_PARAM] = {param_set, param_print, param_reset},
+    [EFFECT_CONTROL_PALETTE] = {ramp_set, ramp_print, ramp_reset},
+    [EFFECT_CONTROL_CURVE] = {ramp_set, ramp_print, ramp_reset},
+    [EFFECT_CONTROL_SCENE] = {field_control_set, field_control_print, slot_reset},
+    [EFFECT_CONTROL_LIGHT] = {field_control_set, field_control_print, slot_reset},
+    [EFFECT_CONTROL_MATERIAL] = {field_control_set, field_control_print, slot_reset},
+    [EFFECT_CONTROL_PLACE] = {field_control_set, field_control_print, slot_reset},
+    [EFFECT_CONTROL_FIELD] = {field_control_set, field_control_print, number_reset},
+    [EFFECT_CONTROL_LOADED] = {field_control_set, field_control_print, NULL},
+    [EFFECT_CONTROL_EVENTS] = {events_control_set, events_control_print, events_control_reset},
+    [EFFECT_CONTROL_UNIFORM] = {field_control_set, field_control_print, slot_reset},
+    [EFFECT_CONTROL_OPTION] = {pass_control_set, pass_control_print, NULL},
+    [EFFECT_CONTROL_SCALE] = {pass_control_set, pass_control_print, NULL},
+};
+
 static void print(const effect *e, const control *c, strbuf *out) {
-    switch (c->face.kind) {
-    case EFFECT_CONTROL_PARAM:
-        param_print(e, c, out);
-        break;
-    case EFFECT_CONTROL_PALETTE:
-    case EFFECT_CONTROL_CURVE:
-        ramp_print(e, c, out);
-        break;
-    case EFFECT_CONTROL_SCENE:
-    case EFFECT_CONTROL_LIGHT:
-    case EFFECT_CONTROL_MATERIAL:
-    case EFFECT_CONTROL_PLACE:
-    case EFFECT_CONTROL_FIELD:
-    case EFFECT_CONTROL_LOADED:
-    case EFFECT_CONTROL_UNIFORM:
-        field_control_print(e, c, out);
-        break;
-    case EFFECT_CONTROL_EVENTS:
-        events_control_print(e, out);
-        break;
-    case EFFECT_CONTROL_OPTION:
-    case EFFECT_CONTROL_SCALE:
-        pass_control_print(e, c, out);
-        break;
-    }
+    kinds[c->face.kind].print(e, c, out);
 }
 
 static void note_initial(effect *e, control *c) {
@@ -186,32 +199,7 @@ const char *effect_control_setting(const effect_control *face) {
 }
 
 static bool is_structure(const control *c) {
-    return c->face.kind == EFFECT_CONTROL_OPTION || c->face.kind == EFFECT_CONTROL_SCALE ||
-           c->face.kind == EFFECT_CONTROL_LOADED;
-}
-
-static bool set(effect *e, control *c, const char *text) {
-    switch (c->face.kind) {
-    case EFFECT_CONTROL_PARAM:
-        return param_set(e, c, text);
-    case EFFECT_CONTROL_PALETTE:
-    case EFFECT_CONTROL_CURVE:
-        return ramp_set(e, c, text);
-    case EFFECT_CONTROL_SCENE:
-    case EFFECT_CONTROL_LIGHT:
-    case EFFECT_CONTROL_MATERIAL:
-    case EFFECT_CONTROL_PLACE:
-    case EFFECT_CONTROL_FIELD:
-    case EFFECT_CONTROL_LOADED:
-    case EFFECT_CONTROL_UNIFORM:
-        return field_control_set(e, c, text);
-    case EFFECT_CONTROL_EVENTS:
-        return events_control_set(e, c, text);
-    case EFFECT_CONTROL_OPTION:
-    case EFFECT_CONTROL_SCALE:
-        return pass_control_set(e, c, text);
-    }
-    return false;
+    return !kinds[c->face.kind].reset;
 }
 
 const char *effect_get_warning(const effect *e) {
@@ -230,39 +218,13 @@ static void forget_old(effect *e, const control *c) {
 
 void effect_reset_control(effect *e, control *c) {
     forget_old(e, c);
-    switch (c->face.kind) {
-    case EFFECT_CONTROL_PARAM:
-        effect_set_value(e, c->face.index, e->params[c->face.index]->desc.value);
-        effect_forget_moved(e, c->face.index);
-        break;
-    case EFFECT_CONTROL_PALETTE:
-    case EFFECT_CONTROL_CURVE:
-        ramp_reset(e, c);
-        break;
-    case EFFECT_CONTROL_SCENE:
-    case EFFECT_CONTROL_LIGHT:
-    case EFFECT_CONTROL_MATERIAL:
-    case EFFECT_CONTROL_PLACE:
-    case EFFECT_CONTROL_UNIFORM:
-        *c->slot = c->original;
-        break;
-    case EFFECT_CONTROL_FIELD:
-        memcpy(c->nodes[0]->value, c->original->value, sizeof c->original->value);
-        break;
-    case EFFECT_CONTROL_EVENTS:
-        events_control_reset(e);
-        break;
-    case EFFECT_CONTROL_LOADED: // structure
-    case EFFECT_CONTROL_OPTION:
-    case EFFECT_CONTROL_SCALE:
-        break;
-    }
+    if (!is_structure(c)) kinds[c->face.kind].reset(e, c);
     c->face.moved = false;
 }
 
 static bool control_take(effect *e, control *c, const char *text) {
     forget_old(e, c);
-    if (!set(e, c, text)) return false;
+    if (!kinds[c->face.kind].set(e, c, text)) return false;
     if (c->face.kind == EFFECT_CONTROL_PARAM) effect_forget_moved(e, c->face.index);
     note_moved(e, c, text);
     return true;

@@ -10,7 +10,6 @@
 #include "scene/bvh.h"
 #include "scene/sky_image.h"
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -30,18 +29,19 @@ effect *effect_create(const effect_desc *desc) {
     e->device = desc->device;
     e->reference = desc->reference;
     e->never_waits = desc->never_waits;
-    e->seconds = desc->seconds > 0 ? desc->seconds : TIME_LIMIT_LOAD_SECONDS;
-    e->file = arena_string(&e->memory, desc->file);
-    e->inside = desc->inside ? arena_string(&e->memory, desc->inside) : NULL;
-    e->bundle = desc->bundle ? arena_string(&e->memory, desc->bundle) : NULL;
-    e->roots[e->root_count++] = arena_string(&e->memory, folder);
+    e->facts.seconds = desc->seconds > 0 ? desc->seconds : TIME_LIMIT_LOAD_SECONDS;
+    e->facts.file = arena_string(&e->memory, desc->file);
+    e->facts.inside = desc->inside ? arena_string(&e->memory, desc->inside) : NULL;
+    e->facts.bundle = desc->bundle ? arena_string(&e->memory, desc->bundle) : NULL;
+    e->facts.source = desc->bundle ? e->facts.bundle : e->facts.file;
+    e->facts.root = e->roots[e->root_count++] = arena_string(&e->memory, folder);
     for (size_t i = 0; i < desc->asset_count; i++)
         e->roots[e->root_count++] = arena_string(&e->memory, desc->assets[i]);
-    e->name = arena_string(&e->memory, path_name(desc->file));
-    e->fps = 24;
+    e->facts.name = arena_string(&e->memory, path_name(desc->file));
+    e->facts.fps = 24;
     e->updated = e->partly = (double)NAN;
-    e->frames = 1;
-    e->first = 1;
+    e->facts.frames = 1;
+    e->facts.first = 1;
     scene_init(&e->scene, &e->memory);
     e->contents = desc->contents ? desc->contents : (e->own_contents = content_cache_create());
     e->library = desc->library;
@@ -126,60 +126,25 @@ void effect_destroy(effect *e) {
 arena *effect_memory(effect *e) {
     return &e->memory;
 }
-const char *effect_root(const effect *e) {
-    return e->roots[0];
+
+const effect_facts *effect_get_facts(const effect *e) {
+    return &e->facts;
 }
 
 size_t effect_roots(const effect *e, const char *const **out) {
     *out = e->roots;
     return e->root_count;
 }
-double effect_seconds(const effect *e) {
-    return e->seconds;
-}
 
 bool effect_draws(const effect *e) {
     return e->device != NULL;
 }
 
-const char *effect_inside(const effect *e) {
-    return e->inside;
-}
-
-const char *effect_file(const effect *e) {
-    return e->file;
-}
-
-const char *effect_source(const effect *e) {
-    return e->bundle ? e->bundle : e->file;
-}
-
-const char *effect_bundle(const effect *e) {
-    return e->bundle;
-}
 scene *effect_scene(effect *e) {
     return &e->scene;
 }
 pass_host *effect_pass_host(effect *e) {
     return &e->host;
-}
-const char *effect_name(const effect *e) {
-    return e->name;
-}
-const char *effect_author(const effect *e) {
-    return e->author;
-}
-const char *effect_licence(const effect *e) {
-    return e->licence;
-}
-double effect_fps(const effect *e) {
-    return e->fps;
-}
-uint32_t effect_frames(const effect *e) {
-    return e->frames;
-}
-uint32_t effect_first_frame(const effect *e) {
-    return e->first;
 }
 size_t effect_pass_count(const effect *e) {
     return e->pass_count;
@@ -198,11 +163,11 @@ shader_library *effect_library(effect *e) {
 }
 
 void effect_set_name(effect *e, const char *name) {
-    e->name = arena_string(&e->memory, name);
+    e->facts.name = arena_string(&e->memory, name);
 }
 void effect_set_author(effect *e, const char *author, const char *licence) {
-    e->author = author ? arena_string(&e->memory, author) : NULL;
-    e->licence = licence ? arena_string(&e->memory, licence) : NULL;
+    e->facts.author = author ? arena_string(&e->memory, author) : NULL;
+    e->facts.licence = licence ? arena_string(&e->memory, licence) : NULL;
 }
 void effect_set_seed(effect *e, uint32_t seed) {
     e->seed = seed;
@@ -212,9 +177,9 @@ bool effect_set_timeline(effect *e, double fps, uint32_t frames, uint32_t first)
     if (!(fps > 0 && fps <= 1000)) return err_set("fps is %g; accepted: above 0, up to 1000", fps);
     if (frames < 1 || frames > 1000000)
         return err_set("frames is %u; accepted: 1 to 1000000", frames);
-    e->fps = fps;
-    e->frames = frames;
-    e->first = first;
+    e->facts.fps = fps;
+    e->facts.frames = frames;
+    e->facts.first = first;
     return true;
 }
 
@@ -448,21 +413,12 @@ const picture *effect_read_picture(effect *e, const char *file, uint32_t side_ma
     return load_shared(e, key, root, path, side_max, load_picture);
 }
 
-static bool set_picture(effect *e, effect_picture which, graph_image image) {
+bool effect_set_picture(effect *e, effect_picture which, graph_image image) {
     if (graph_get_desc(e->graph, image)->depth) return err_set("the picture of an effect is 2D");
     e->pictures[which] = image;
     return true;
 }
 
-bool effect_set_output(effect *e, graph_image image) {
-    return set_picture(e, EFFECT_OUTPUT, image);
-}
-bool effect_set_linear(effect *e, graph_image image) {
-    return set_picture(e, EFFECT_LINEAR, image);
-}
-bool effect_set_depth(effect *e, graph_image image) {
-    return set_picture(e, EFFECT_DEPTH, image);
-}
 graph_image effect_get_picture(const effect *e, effect_picture which) {
     return e->unseen ? (graph_image){0} : e->pictures[which];
 }

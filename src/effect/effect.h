@@ -52,24 +52,30 @@ typedef struct effect_desc {
     content_cache *contents;
 } effect_desc;
 
+typedef struct effect_facts {    // what it is; of the script's numbers, as far as it has run
+    const char *file, *root;     // its file, and that one's folder
+    const char *inside, *bundle; // effect_desc
+    const char *source;          // what its user named: its bundle, else its file
+    double seconds;              // that a load may take
+    const char *name;
+    const char *author, *licence; // NULL: not said
+    double fps;
+    uint32_t frames, first; // how many, and the number of the first
+} effect_facts;
+
 effect *effect_create(const effect_desc *desc);
 void effect_destroy(effect *e);
+const effect_facts *effect_get_facts(const effect *e);
 
 // ---- declaring (script) -----------------------------------------------------------------------
 
 arena *effect_memory(effect *e);                               // lives as long as the effect
-const char *effect_root(const effect *e);                      // folder of its file
 size_t effect_roots(const effect *e, const char *const **out); // that, and those of assets
 // Finds a file of the effect by its name: in its folder, else in those of assets. `path`, which may
 // have a wildcard in its last component, is watched from now on even if there is no such file.
 // Returns the folder, in which whoever reads it must stay. NULL with a message.
 const char *effect_find_file(effect *e, const char *name, char path[4096]);
-const char *effect_file(const effect *e);
-const char *effect_source(const effect *e); // what its user named: its bundle, else its file
-const char *effect_bundle(const effect *e); // effect_desc.bundle
-const char *effect_inside(const effect *e); // effect_desc.inside
-double effect_seconds(const effect *e);     // that a load may take
-bool effect_draws(const effect *e);         // false: it is only checked
+bool effect_draws(const effect *e); // false: it is only checked
 scene *effect_scene(effect *e);
 pass_host *effect_pass_host(effect *e);
 
@@ -222,9 +228,12 @@ void effect_skip_pictures(effect *e);
 // "antialias", gathers the picture that the last `final` takes. With a reference, which has samples
 // of its own, it does nothing. False with a message when that setting is wrong.
 bool effect_set_antialias(effect *e, bool on);
-bool effect_set_output(effect *e, graph_image image); // the picture, display-referred
-bool effect_set_linear(effect *e, graph_image image); // scene-linear, for EXR
-bool effect_set_depth(effect *e, graph_image image);  // linear depth in metres, for EXR
+typedef enum effect_picture {
+    EFFECT_OUTPUT, // display-referred
+    EFFECT_LINEAR, // scene-linear, for EXR
+    EFFECT_DEPTH,  // linear depth in metres, for EXR
+} effect_picture;
+bool effect_set_picture(effect *e, effect_picture which, graph_image image);
 
 typedef struct effect_hooks {                                          // calls back into the script
     bool (*call)(void *user, int function, double time, float out[4]); // function of time
@@ -249,6 +258,7 @@ typedef struct effect_place { // where a script makes something
 // Notes the place of a pass, a parameter, a palette, a curve, or a field that the script gave to
 // the scene, a light or a material. `call` must live as long as the effect.
 void effect_note_place(effect *e, const void *made, const char *file, int line, const char *call);
+const effect_place *effect_find_place(const effect *e, const void *made); // NULL: not known
 enum {
     EFFECT_MAX_RAMPS = 256,    // palettes and curves that get a name; later ones get none
     EFFECT_CONTROL_COST = 512, // approximate bytes of a control
@@ -282,8 +292,6 @@ const effect_layers *effect_add_layers(effect *e, const char *name, field *const
                                        field *const *shared_values, size_t shared_count);
 size_t effect_layers_count(const effect *e);
 const effect_layers *effect_get_layers(const effect *e, size_t index);
-// Where the script lists them. NULL: that is not known.
-const effect_place *effect_layers_place(const effect *e, const effect_layers *l);
 // Makes a control "GROUP.NAME" of numbers that are read while the effect loads, of which `value`
 // has as many as `desc` says: a setting replaces them. `made` is what effect_note_place was told;
 // both and `desc` must live as long as the effect. False with a message when a setting is wrong.
@@ -296,12 +304,6 @@ void effect_mark_structural(effect *e, size_t param);
 
 // ---- asking -----------------------------------------------------------------------------------
 
-const char *effect_name(const effect *e);
-const char *effect_author(const effect *e); // NULL: not said
-const char *effect_licence(const effect *e);
-double effect_fps(const effect *e);
-uint32_t effect_frames(const effect *e);
-uint32_t effect_first_frame(const effect *e);
 size_t effect_param_count(const effect *e);
 const effect_param *effect_get_param(const effect *e, size_t index);
 size_t effect_pass_count(const effect *e);
@@ -344,7 +346,6 @@ const effect_control *effect_get_control(const effect *e, size_t index);
 const effect_control *effect_find_control(effect *e, const char *name); // NULL: suggests
 // Where the script makes what the control belongs to. NULL: that is not known.
 const effect_place *effect_control_place(const effect *e, const effect_control *c);
-const effect_place *effect_pass_place(const effect *e, const pass *p); // NULL: not known
 // The palette or curve of a control of that kind.
 const palette *effect_control_palette(const effect_control *c);
 const curve *effect_control_curve(const effect_control *c);
@@ -455,5 +456,4 @@ const char *effect_get_warning(const effect *e);
 // there is no such pass.
 uint32_t effect_samples(const effect *e);
 
-typedef enum effect_picture { EFFECT_OUTPUT, EFFECT_LINEAR, EFFECT_DEPTH } effect_picture;
 graph_image effect_get_picture(const effect *e, effect_picture which); // zero when there is none

@@ -121,8 +121,8 @@ void ramp_print(const effect *e, const control *c, strbuf *out);
 bool ramp_rename(effect *e, control *c); // because a parameter takes its name
 bool events_add_control(effect *e);      // of one that hears any; systems.c
 bool events_control_set(effect *e, control *c, const char *text);
-void events_control_reset(effect *e);
-void events_control_print(const effect *e, strbuf *out);
+void events_control_reset(effect *e, control *c);
+void events_control_print(const effect *e, const control *c, strbuf *out);
 
 // sheet.c, for layer.c too. Of the march that is called so, or the first; NULL with a message.
 pass *effect_find_march(effect *e, const char *label);
@@ -145,17 +145,15 @@ typedef struct effect_given { // by a host
 struct effect {
     arena memory;
     gpu *device;
-    const char *file, *name, *author, *licence; // the last two NULL: not said
-    const char *roots[1 + EFFECT_MAX_ASSETS];   // folders that it may read, its own first
+    effect_facts facts;
+    const char *roots[1 + EFFECT_MAX_ASSETS]; // folders that it may read, its own first
     size_t root_count;
-    const char *inside, *bundle;           // effect_desc
     shader_library *library, *own_library; // the latter NULL when it is shared
     scene scene;
     graph *graph;
     pass_host host;
 
-    double fps;
-    uint32_t frames, first, seed;
+    uint32_t seed;
 
     effect_param **params;
     float (*values)[4]; // of the params, as field_context wants them
@@ -221,7 +219,6 @@ struct effect {
     bool compiled, allocated;
     uint32_t reference; // effect_desc
     bool never_waits;   // effect_desc
-    double seconds;     // of it, as they hold
     bool unseen;        // its pictures are not drawn
     effect_snapshots snapshots;
     const effect_setting *settings;

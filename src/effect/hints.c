@@ -37,7 +37,7 @@ typedef struct view { // the camera and what it might see
 // As pass/uniform.c tells of numbers: a window shows the first warning.
 static void PRINTF_LIKE(2, 3) hint_tell(effect *e, const char *format, ...) {
     char text[sizeof e->host.warning];
-    size_t length = (size_t)snprintf(text, sizeof text, "%s: ", e->file);
+    size_t length = (size_t)snprintf(text, sizeof text, "%s: ", e->facts.file);
     va_list list;
     va_start(list, format);
     if (length < sizeof text) vsnprintf(text + length, sizeof text - length, format, list);

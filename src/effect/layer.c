@@ -4,7 +4,6 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "effect/effect_impl.h"
-#include <math.h>
 #include <string.h>
 
 // ---- what the host says -----------------------------------------------------------------------
@@ -26,7 +25,7 @@ bool effect_set_lights(effect *e, const struct light_entry *lights, size_t count
         return err_set(
             "%s: %zu lights besides the sun; the effect is made for %zu (`lights` of the "
             "effect declares them)",
-            e->file, count - 1, e->scene.light_count);
+            e->facts.file, count - 1, e->scene.light_count);
     e->given.has_lights = count > 0;
     memset(&e->given.lights, 0, sizeof e->given.lights);
     e->given.lights.count.v[0] = (uint32_t)e->scene.light_count + 1;
@@ -86,7 +85,7 @@ static void tell_what_is_left_out(const effect *e, const pass *march) {
                 strbuf_add(&all, "%s'%s'", all.length ? ", " : "", pass_label(e->passes[i]));
     if (all.length)
         log_write(LOG_WARNING, "%s: a layer shows the medium of '%s' alone; it leaves out %s",
-                  e->file, pass_label(march), strbuf_text(&all));
+                  e->facts.file, pass_label(march), strbuf_text(&all));
     strbuf_free(&all);
 }
 

@@ -15,7 +15,7 @@ void effect_note_place(effect *e, const void *made, const char *file, int line, 
     e->places[e->place_count++] = (noted_place){made, {last, line, call}};
 }
 
-static const effect_place *find_place(const effect *e, const void *made) {
+const effect_place *effect_find_place(const effect *e, const void *made) {
     for (size_t i = e->place_count; made && i-- > 0;)
         if (e->places[i].made == made) return &e->places[i].place;
     return NULL;
@@ -49,20 +49,12 @@ static const void *made_by_script(const effect *e, const control *c) {
 }
 
 const effect_place *effect_control_place(const effect *e, const effect_control *c) {
-    const effect_place *own = find_place(e, made_by_script(e, (const control *)c));
+    const effect_place *own = effect_find_place(e, made_by_script(e, (const control *)c));
     // A value that the script leaves open belongs where it gives another of the same object.
     for (size_t i = 0; !own && c->kind >= EFFECT_CONTROL_SCENE && i < e->control_count; i++) {
         const control *other = e->controls[i];
         if (other->face.kind == c->kind && strcmp(other->face.group, c->group) == 0)
-            own = find_place(e, made_by_script(e, other));
+            own = effect_find_place(e, made_by_script(e, other));
     }
-    return own ? own : find_place(e, ((const control *)c)->owner);
-}
-
-const effect_place *effect_layers_place(const effect *e, const effect_layers *l) {
-    return find_place(e, l);
-}
-
-const effect_place *effect_pass_place(const effect *e, const pass *p) {
-    return find_place(e, p);
+    return own ? own : effect_find_place(e, ((const control *)c)->owner);
 }

@@ -42,7 +42,7 @@ static const field *all_media(effect *e) {
         if (!known) sum = sum ? field_make(&e->memory, "add", args, NULL) : density;
         if (!sum) return NULL;
     }
-    if (!sum) err_set("%s: nothing fills its space", e->name);
+    if (!sum) err_set("%s: nothing fills its space", e->facts.name);
     return sum;
 }
 
@@ -68,7 +68,7 @@ static bool make_probe(effect *e) {
 bool effect_probe(effect *e, float x, float y, effect_probed *out) {
     float origin[3], way[3], found[1 + PASS_PROBE_VALUES][4];
     *out = (effect_probed){0};
-    if (!e->counter) return err_set("%s: render a frame first", e->name);
+    if (!e->counter) return err_set("%s: render a frame first", e->facts.name);
     if (!make_probe(e) || !effect_camera_ray(e, x, y, origin, way)) return false;
     glm_vec3_normalize(way);
     if (!pass_probe_look(e->probe, origin, way, found)) return false;

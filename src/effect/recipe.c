@@ -2,10 +2,8 @@
 #include "effect/recipe.h"
 #include "base/error.h"
 #include "base/file.h"
-#include "base/memory.h"
 #include "base/str.h"
 #include <ctype.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -23,7 +21,7 @@ void recipe_write(const effect *e, double frame, uint32_t width, uint32_t height
         if (c->moved) strbuf_add(&settings, "%s=%s\n", c->name, effect_control_setting(c));
     }
     out[0] = (png_text){"Software", "roil " ROIL_VERSION};
-    out[1] = (png_text){key_effect, effect_source(e)};
+    out[1] = (png_text){key_effect, effect_get_facts(e)->source};
     out[2] = (png_text){key_frame, arena_format(memory, "%.17g", frame)};
     out[3] = (png_text){key_size, arena_format(memory, "%ux%u", width, height)};
     out[4] = (png_text){key_settings, arena_string(memory, strbuf_text(&settings))};

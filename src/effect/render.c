@@ -17,7 +17,7 @@ static bool add_outputs(effect *e) {
     if (e->unseen) return true;
     if (!e->pictures[EFFECT_OUTPUT].id)
         return err_set("%s: the effect has no output; set `output` of the effect to an image",
-                       e->file);
+                       e->facts.file);
     for (int i = 0; i < 3; i++)
         if (e->pictures[i].id) graph_add_output(e->graph, e->pictures[i]);
     return true;
@@ -29,7 +29,7 @@ static bool check_reference(const effect *e) {
         if (pass_samples(e->passes[i], &samples)) return true;
     return !e->reference || err_set("%s: a reference is traced instead of passes `march`, and the "
                                     "effect has none",
-                                    e->file);
+                                    e->facts.file);
 }
 
 static bool draws_mesh(const pass *p, const scene_mesh *mesh) {
@@ -128,15 +128,20 @@ static bool compile_graph(effect *e) {
     if (!graph_compile(e->graph, ANY_SIZE, ANY_SIZE)) return false;
     for (size_t i = 0; i < e->pass_count && !e->unseen; i++)
         if (pass_get_simulation(e->passes[i]) && !effect_runs(e, e->passes[i]))
-            log_write(LOG_WARNING, "%s: nothing draws or reads '%s', so it is left out", e->file,
-                      pass_label(e->passes[i]));
+            log_write(LOG_WARNING, "%s: nothing draws or reads '%s', so it is left out",
+                      e->facts.file, pass_label(e->passes[i]));
     if (!e->unseen) effect_tell_hints(e);
     return true;
 }
 
 bool effect_check(effect *e) {
-    return check_reference(e) && add_outputs(e) && complete(e) && make_bvh(e) &&
-           worker_each(e->pass_count, check_one, e) && compile_graph(e);
+    gpu *device = e->host.device;
+    if (e->compiled) return true;
+    e->host.device = NULL; // nothing is built for it
+    bool done = check_reference(e) && add_outputs(e) && complete(e) && make_bvh(e) &&
+                worker_each(e->pass_count, check_one, e) && compile_graph(e);
+    e->host.device = device;
+    return done;
 }
 
 bool effect_compile(effect *e) {
@@ -173,7 +178,7 @@ static bool fits(effect *e) {
     const bool fit = gpu_memory_fits(e->device, &lists[shared ? 0 : 1], freed) &&
                      (shared || budget_ask(host, lists[0].rows, lists[0].count, 0));
     for (int i = 0; i < 2; i++) budget_list_free(&lists[i]);
-    return fit || err_prefix("%s: ", e->file);
+    return fit || err_prefix("%s: ", e->facts.file);
 }
 
 // The graph is compiled: what it culls needs no memory.
@@ -200,7 +205,7 @@ bool effect_build(effect *e, uint32_t width, uint32_t height) {
 }
 
 static bool update(effect *e, double frame) {
-    double dt = isnan(e->updated) ? 0 : (frame - e->updated) / e->fps;
+    double dt = isnan(e->updated) ? 0 : (frame - e->updated) / e->facts.fps;
     if (frame < e->updated && !e->systems) effect_reset_instances(e); // these do so themselves
     e->updated = frame;
     return effect_run_systems(e, frame) &&
@@ -212,7 +217,7 @@ static bool run_clocks(effect *e, double frame) {
     double next;
     while (effect_aim_clocks(e, frame, &next) && next + 1 <= frame) {
         if (e->hooks.renew) e->hooks.renew(e->hooks.user);
-        e->context.time = (next - e->first) / e->fps;
+        e->context.time = (next - e->facts.first) / e->facts.fps;
         if (!update(e, next) || !effect_tick(e)) return false;
     }
     return effect_aim_clocks(e, frame, &next);
@@ -237,8 +242,8 @@ static bool update_grids(effect *e, gpu *device) {
 
 // Without a device grids only know their bounds.
 bool effect_evaluate(effect *e, double frame, gpu *device, bool again) {
-    double time = (frame - e->first) / e->fps;
-    double dt = e->counter ? (frame - e->last_moment) / e->fps : 0;
+    double time = (frame - e->facts.first) / e->facts.fps;
+    double dt = e->counter ? (frame - e->last_moment) / e->facts.fps : 0;
     if (!again && !run_clocks(e, frame)) return false;
     e->context.time = time;
     if (device && e->hooks.renew) e->hooks.renew(e->hooks.user);
@@ -335,51 +340,39 @@ uint32_t effect_frames_before(const effect *e) {
 
 // ---- taking over from another effect ----------------------------------------------------------
 
-// Exchanges the k-th grid of a kind with the k-th of the other effect, so that a second call undoes
-// it.
-static void exchange_grids(effect *e, effect *from) {
-    bool *taken = mem_alloc(from->grid_count * sizeof *taken);
-    for (size_t i = 0; i < e->grid_count; i++) {
-        field_grid *grid = e->grids[i];
-        bool done = !grid->exchange;
-        for (size_t k = 0; k < from->grid_count && !done; k++) {
-            if (taken[k] || from->grids[k]->exchange != grid->exchange) continue;
-            done = taken[k] = grid->exchange(grid, from->grids[k]);
-        }
-    }
-    mem_free(taken);
+static bool exchange_grid(effect *e, size_t i, effect *from, size_t k) {
+    field_grid *grid = e->grids[i], *other = from->grids[k];
+    return grid->exchange && grid->exchange == other->exchange && grid->exchange(grid, other);
 }
 
-static void exchange_meshes(effect *e, effect *from) {
-    bool *taken = mem_alloc(from->mesh_count * sizeof *taken);
-    for (size_t i = 0; i < e->mesh_count; i++) {
+static bool exchange_mesh(effect *e, size_t i, effect *from, size_t k) {
+    return scene_mesh_exchange(e->meshes[i], from->meshes[k]);
+}
+
+static bool exchange_simulation(effect *e, size_t i, effect *from, size_t k) {
+    const pass_simulation *kind = pass_get_simulation(e->passes[i]);
+    return kind && kind->exchange && pass_get_simulation(from->passes[k]) == kind &&
+           kind->exchange(e->passes[i], from->passes[k]);
+}
+
+// Exchanges each of `count` with the first of the other effect that matches and was not taken, so
+// that a second call undoes it.
+static void exchange_each(effect *e, size_t count, effect *from, size_t others,
+                          bool (*run)(effect *e, size_t i, effect *from, size_t k)) {
+    bool *taken = mem_alloc(others * sizeof *taken);
+    for (size_t i = 0; i < count; i++) {
         bool done = false;
-        for (size_t k = 0; k < from->mesh_count && !done; k++) {
-            if (taken[k]) continue;
-            done = taken[k] = scene_mesh_exchange(e->meshes[i], from->meshes[k]);
-        }
-    }
-    mem_free(taken);
-}
-
-static void exchange_simulations(effect *e, effect *from) {
-    bool *taken = mem_alloc(from->pass_count * sizeof *taken);
-    for (size_t i = 0; i < e->pass_count; i++) {
-        const pass_simulation *kind = pass_get_simulation(e->passes[i]);
-        bool done = !kind || !kind->exchange;
-        for (size_t k = 0; k < from->pass_count && !done; k++) {
-            if (taken[k] || pass_get_simulation(from->passes[k]) != kind) continue;
-            done = taken[k] = kind->exchange(e->passes[i], from->passes[k]);
-        }
+        for (size_t k = 0; k < others && !done; k++)
+            if (!taken[k]) done = taken[k] = run(e, i, from, k);
     }
     mem_free(taken);
 }
 
 static void exchange(effect *e, effect *from) {
     graph_adopt(e->graph, from->graph);
-    exchange_grids(e, from);
-    exchange_simulations(e, from);
-    exchange_meshes(e, from);
+    exchange_each(e, e->grid_count, from, from->grid_count, exchange_grid);
+    exchange_each(e, e->pass_count, from, from->pass_count, exchange_simulation);
+    exchange_each(e, e->mesh_count, from, from->mesh_count, exchange_mesh);
     if (e->sky && from->sky) sky_image_exchange(e->sky, from->sky);
 }
 

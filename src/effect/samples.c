@@ -83,7 +83,7 @@ bool effect_add_mean(effect *e, graph_image *image, bool weighted) {
     const float scale = graph_get_desc(e->graph, *image)->scale;
     if (!(scale > 0))
         return err_set("%s: the size of the picture '%s' is fixed, which samples are averaged of",
-                       e->file, graph_get_desc(e->graph, *image)->name);
+                       e->facts.file, graph_get_desc(e->graph, *image)->name);
     pass *p = effect_add_pass(e, "mean", NULL, NULL);
     if (!p || !pass_set_image(p, "source", *image) || !pass_set_scale(p, scale) ||
         !pass_set_option(p, "weighted", weighted ? "on" : "off") || !pass_declare(p))
@@ -192,7 +192,7 @@ bool effect_antialias(effect *e) {
         return err_set(
             "%s: antialias gathers the picture that a pass `final` takes, and the effect "
             "has none",
-            e->file);
+            e->facts.file);
     graph_image source = pass_input(last, "source");
     pass *solid = find_before(e, source, has_depth), *volume = find_before(e, source, has_reach);
     pass *p = effect_add_pass(e, "accumulate", NULL, name);

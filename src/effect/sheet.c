@@ -24,10 +24,10 @@ pass *effect_find_march(effect *e, const char *label) {
         strbuf_add(&all, "%s%s", all.length ? ", " : "", pass_label(p));
     }
     if (all.length)
-        err_set("%s: no pass march is called '%s'; there are: %s", e->file, label,
+        err_set("%s: no pass march is called '%s'; there are: %s", e->facts.file, label,
                 strbuf_text(&all));
     else
-        err_set("%s: no pass march in it, whose medium could be shown", e->file);
+        err_set("%s: no pass march in it, whose medium could be shown", e->facts.file);
     strbuf_free(&all);
     return NULL;
 }
@@ -53,7 +53,7 @@ static bool give_temperature(effect *e, const pass *march, pass *maps) {
                ? pass_set_field(maps, "temperature", found)
                : err_set("%s: no temperature is known: neither does pass '%s' say one, nor has its "
                          "emission a palette of a physical black body",
-                         e->file, pass_label(march));
+                         e->facts.file, pass_label(march));
 }
 
 const field *effect_find_velocity(effect *e, const pass *march) {

@@ -17,7 +17,7 @@
 static const double least_patience = 0.03, most_patience = 0.25;
 
 static double time_of(const effect *e, double frame) {
-    return (frame - e->first) / e->fps;
+    return (frame - e->facts.first) / e->facts.fps;
 }
 
 // Returns the next pass that simulates and runs, from `*index` on; NULL: there are no more.
@@ -66,8 +66,9 @@ static bool is_past(const effect *e, double time) {
 // Returns the first frame that has not been simulated, at most `frame`.
 static double next_frame(const effect *e, double frame) {
     double shown = reached(e);
-    double next = isfinite(shown) ? floor(shown * e->fps + 1e-6) + e->first + 1 : (double)e->first;
-    return fmin(fmax(next, (double)e->first), frame);
+    double next = isfinite(shown) ? floor(shown * e->facts.fps + 1e-6) + e->facts.first + 1
+                                  : (double)e->facts.first;
+    return fmin(fmax(next, (double)e->facts.first), frame);
 }
 
 // Simulations that are beyond the frame restart, or all continue from a snapshot before it; so they

@@ -59,13 +59,13 @@ void effect_forget_snapshots(effect *e) {
 }
 
 void effect_forget_snapshots_from(effect *e, double time) {
-    forget(e, is_before, time * e->fps + e->first);
+    forget(e, is_before, time * e->facts.fps + e->facts.first);
 }
 
 // ---- keeping ----------------------------------------------------------------------------------
 
 static double gap_of(const effect *e) { // frames
-    return e->snapshots.gap > 0 ? e->snapshots.gap : least_gap * e->fps;
+    return e->snapshots.gap > 0 ? e->snapshots.gap : least_gap * e->facts.fps;
 }
 
 // Returns the number of snapshots up to a frame.
@@ -80,7 +80,7 @@ static bool is_due(const effect *e, double frame) {
     const effect_snapshots *s = &e->snapshots;
     if (!e->compiled || !graph_simulates(e->graph)) return false;
     size_t i = count_until(e, frame);
-    double before = i ? s->list[i - 1].frame : (double)e->first;
+    double before = i ? s->list[i - 1].frame : (double)e->facts.first;
     double after = i < s->count ? s->list[i].frame : (double)INFINITY;
     return frame >= before + gap_of(e) && frame + gap_of(e) <= after && effect_can_save(e);
 }
@@ -155,7 +155,7 @@ static checkpoint *keep_root(effect *e) {
 
 effect_branch *effect_branch_begin(effect *e) {
     if (!e->compiled || !graph_simulates(e->graph) || !effect_can_save(e) || e->behind) {
-        err_set("%s: nothing in it has a state to branch off from", e->file);
+        err_set("%s: nothing in it has a state to branch off from", e->facts.file);
         return NULL;
     }
     checkpoint *state = keep_root(e);

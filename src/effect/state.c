@@ -32,7 +32,7 @@ bool effect_can_save(const effect *e) {
 
 static bool is_ready(const effect *e) {
     return (e->compiled && graph_simulates(e->graph)) ||
-           err_set("%s: nothing in it simulates, so it has no state to keep", e->file);
+           err_set("%s: nothing in it simulates, so it has no state to keep", e->facts.file);
 }
 
 void effect_list_state(const effect *e, double frame, checkpoint_list *out) {

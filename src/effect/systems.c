@@ -31,7 +31,7 @@ struct effect_systems {
 static const double SOON = 1e-9; // seconds that are none
 
 static double time_of(const effect *e, double frame) {
-    return (frame - e->first) / e->fps;
+    return (frame - e->facts.first) / e->facts.fps;
 }
 
 static effect_systems *systems_of(effect *e) {
@@ -274,7 +274,7 @@ static bool systems_begin(effect *e, effect_systems *s) {
         effect_set_value(e, s->moved[i].param, s->moved[i].before);
     effect_reset_instances(e);
     s->moved_count = s->next = 0;
-    s->frame = e->first - 1.0;
+    s->frame = e->facts.first - 1.0;
     e->context.time = 0;
     return !e->hooks.start || e->hooks.start(e->hooks.user);
 }
@@ -298,7 +298,7 @@ static bool events_tell(effect *e, effect_systems *s) { // what has happened unt
 }
 
 static bool systems_step(effect *e, effect_systems *s) {
-    double dt = s->frame < e->first ? 0 : 1 / e->fps;
+    double dt = s->frame < e->facts.first ? 0 : 1 / e->facts.fps;
     s->frame++;
     if (e->hooks.renew) e->hooks.renew(e->hooks.user);
     e->context.time = time_of(e, s->frame);
@@ -315,8 +315,8 @@ static bool tell_progress(effect *e, double done, double whole) {
 bool effect_run_systems(effect *e, double frame) {
     effect_systems *s = e->systems;
     if (!s) return true;
-    double target = fmax(floor(frame + 1e-6), e->first), time = e->context.time;
-    if (target - e->first > MOST_FRAMES)
+    double target = fmax(floor(frame + 1e-6), e->facts.first), time = e->context.time;
+    if (target - e->facts.first > MOST_FRAMES)
         return err_set("frame %g: what the script does from frame to frame is run for at most %d "
                        "of them",
                        frame, MOST_FRAMES);
@@ -381,10 +381,12 @@ bool events_control_set(effect *e, control *c, const char *text) {
     return done || err_prefix("%s: ", c->face.name);
 }
 
-void events_control_reset(effect *e) {
+void events_control_reset(effect *e, control *c) {
+    (void)c;
     events_take(e, e->systems->own, e->systems->own_count);
 }
 
-void events_control_print(const effect *e, strbuf *out) {
+void events_control_print(const effect *e, const control *c, strbuf *out) {
+    (void)c;
     events_print(e->systems->events, e->systems->count, out);
 }

@@ -2,7 +2,6 @@
 // its own voxels if they are cubes and no other size is asked for. The medium of a pass is sampled
 // as finely as the finest grid below it. Each field is a bake of its own.
 #include "base/error.h"
-#include "base/memory.h"
 #include "effect/effect_impl.h"
 #include <math.h>
 #include <string.h>
@@ -34,11 +33,12 @@ static bool no_source(effect *e, const char *name) {
         if (has_medium(e->passes[i]))
             strbuf_add(&all, "%s%s", all.length ? ", " : "", pass_label(e->passes[i]));
     if (!all.length)
-        err_set("%s: there is no volume in it: no grid, and no pass with a density", e->file);
+        err_set("%s: there is no volume in it: no grid, and no pass with a density", e->facts.file);
     else if (name)
-        err_set("%s: no grid or medium '%s'; there are: %s", e->file, name, strbuf_text(&all));
+        err_set("%s: no grid or medium '%s'; there are: %s", e->facts.file, name,
+                strbuf_text(&all));
     else
-        err_set("%s: no pass `march`; name one of: %s", e->file, strbuf_text(&all));
+        err_set("%s: no pass `march`; name one of: %s", e->facts.file, strbuf_text(&all));
     strbuf_free(&all);
     return false;
 }
@@ -145,7 +145,7 @@ bool effect_medium_box(effect *e, const field *density, double first, double las
     *out = box3_empty();
     for (double frame = first; frame <= last; frame += step) {
         box3 box;
-        at.time = (frame - e->first) / e->fps;
+        at.time = (frame - e->facts.first) / e->facts.fps;
         if (!field_bounds(density, &at, &box)) return false;
         *out = box3_union(*out, box);
     }

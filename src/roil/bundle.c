@@ -161,7 +161,7 @@ void roil_count_users(int change) {
 }
 
 bool roil_may_write(const roil_effect *e) {
-    const char *source = effect_bundle(e->effect);
+    const char *source = effect_get_facts(e->effect)->bundle;
     return !source || err_set("%s is a bundle, which is never changed; `roil new NAME --from %s` "
                               "makes a folder of it",
                               source, source);
@@ -238,17 +238,18 @@ static bool add_choices(owned_inputs *own, roil *r, roil_effect *e) {
 static bool add_presets(owned_inputs *own, const roil_effect *e) {
     enum { MOST = 256 };
     char(*names)[64] = mem_alloc(MOST * sizeof *names);
-    const char *file = effect_file(e->effect);
+    const char *file = effect_get_facts(e->effect)->file;
     size_t count = roil_presets(file, names, MOST);
     bool done = true;
     for (size_t i = 0; done && i < count && i < MOST; i++) {
         char path[PATH_CAP], root[PATH_CAP], rest[PATH_CAP];
         size_t size;
         done = roil_preset_path(path, file, names[i]);
-        int preset = done ? file_open_inside(effect_root(e->effect), path, SIZE_MAX, &size) : -1;
+        int preset =
+            done ? file_open_inside(effect_get_facts(e->effect)->root, path, SIZE_MAX, &size) : -1;
         if (preset < 0) continue; // a link that leads out
         close(preset);
-        done = path_split_inside(root, rest, effect_root(e->effect), path) &&
+        done = path_split_inside(root, rest, effect_get_facts(e->effect)->root, path) &&
                add_input(own, rest, path, size);
     }
     mem_free(names);
@@ -276,7 +277,8 @@ static roil_inputs *collect(roil *r, const char *file) {
     if (done) {
         qsort(own->list, own->inputs.count, sizeof *own->list, by_name);
         own->inputs.files = own->list;
-        own->inputs.effect = arena_string(&own->memory, path_name(effect_file(e->effect)));
+        own->inputs.effect =
+            arena_string(&own->memory, path_name(effect_get_facts(e->effect)->file));
         keep_info(own, e);
     }
     roil_unload(e);

@@ -390,7 +390,7 @@ static bool is_overruled(roil_effect *e, const effect_control *c) {
 roil_edits *edits_begin(const roil_effect *e) {
     if (!roil_may_write(e)) return NULL;
     roil_edits *x = mem_alloc(sizeof *x);
-    x->root = arena_string(&x->memory, effect_root(e->effect)); // which may end before
+    x->root = arena_string(&x->memory, effect_get_facts(e->effect)->root); // which may end before
     return x;
 }
 

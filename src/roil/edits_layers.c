@@ -22,9 +22,9 @@ typedef struct layer_list { // in a text
 
 // Returns whether an earlier list is that of the same call, as in a loop or a function.
 static bool is_repeated(const effect *e, size_t index) {
-    const effect_place *place = effect_layers_place(e, effect_get_layers(e, index));
+    const effect_place *place = effect_find_place(e, effect_get_layers(e, index));
     for (size_t i = 0; place && i < index; i++)
-        if (edits_same_place(effect_layers_place(e, effect_get_layers(e, i)), place)) return true;
+        if (edits_same_place(effect_find_place(e, effect_get_layers(e, i)), place)) return true;
     return false;
 }
 
@@ -181,7 +181,7 @@ static bool find_change(const layer_list *l, size_t i, roil_layer_change how, so
 }
 
 static bool change(roil_edits *x, layer_list *l, size_t i, roil_layer_change how) {
-    const effect_place *place = effect_layers_place(l->effect->effect, l->own);
+    const effect_place *place = effect_find_place(l->effect->effect, l->own);
     source_call call;
     source_range at;
     strbuf text = {0};

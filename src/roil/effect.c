@@ -92,13 +92,14 @@ bool roil_check(roil_effect *e) {
 }
 
 roil_effect_info roil_get_info(const roil_effect *e) {
+    const effect_facts *facts = effect_get_facts(e->effect);
     return (roil_effect_info){
-        .name = effect_name(e->effect),
-        .author = effect_author(e->effect),
-        .licence = effect_licence(e->effect),
-        .fps = effect_fps(e->effect),
-        .first_frame = effect_first_frame(e->effect),
-        .frames = effect_frames(e->effect),
+        .name = facts->name,
+        .author = facts->author,
+        .licence = facts->licence,
+        .fps = facts->fps,
+        .first_frame = facts->first,
+        .frames = facts->frames,
     };
 }
 

@@ -25,7 +25,7 @@ static size_t list_passes(roil_effect *e, roil_graph_pass *out, size_t capacity)
     graph_passes(g, all, count);
     for (size_t i = 0; i < count && i < capacity; i++) {
         const pass *p = owner_of(e, all[i].name);
-        const effect_place *place = p ? effect_pass_place(e->effect, p) : NULL;
+        const effect_place *place = p ? effect_find_place(e->effect, p) : NULL;
         out[i] = (roil_graph_pass){.name = all[i].name,
                                    .pass = p ? pass_label(p) : all[i].name,
                                    .file = place ? place->file : NULL,

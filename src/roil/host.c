@@ -9,7 +9,8 @@
 // ---- the layer --------------------------------------------------------------------------------
 
 static bool make_layer(roil_effect *e, const roil_layer_desc *desc) {
-    if (e->has_layer) return err_set("%s: the effect is a layer already", effect_file(e->effect));
+    if (e->has_layer)
+        return err_set("%s: the effect is a layer already", effect_get_facts(e->effect)->file);
     if (e->width) return err_set("roil_make_layer comes before roil_prepare");
     if (e->averaged) return err_set("the pictures of a layer are not averaged");
     if (!effect_add_layer(e->effect, desc ? desc->source : NULL, desc && desc->motion, &e->layer))

@@ -332,8 +332,9 @@ char *roil_info_params(roil_effect *e) {
     mem_enter();
     strbuf out = {0};
     effect *fx = e->effect;
-    strbuf_add(&out, "%s: %u frames from %u at %g a second\n", effect_name(fx), effect_frames(fx),
-               effect_first_frame(fx), effect_fps(fx));
+    const effect_facts *facts = effect_get_facts(fx);
+    strbuf_add(&out, "%s: %u frames from %u at %g a second\n", facts->name, facts->frames,
+               facts->first, facts->fps);
     add_memory(&out, e->owner);
     const char *section = "";
     for (size_t i = 0; i < roil_control_count(e); i++) {
@@ -351,7 +352,7 @@ char *roil_info_params(roil_effect *e) {
 char *roil_info_graph(roil_effect *e) {
     mem_enter();
     strbuf out = {0};
-    graph_print_dot(effect_graph(e->effect), effect_name(e->effect), &out);
+    graph_print_dot(effect_graph(e->effect), effect_get_facts(e->effect)->name, &out);
     return roil_leave_text(text_finish(&out));
 }
 

@@ -7,7 +7,6 @@
 #include "base/memory.h"
 #include "roil/live.h"
 #include "script/script.h"
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -150,7 +149,7 @@ static effect *builder_load(roil_live *l, const order *o, file_set *files) {
     }
     arena_free(&assets.memory);
     bool done = e && script_load(e, r->scripts) && effect_check_settings(e) && effect_compile(e) &&
-                effect_rehearse(e, o->framed ? o->frame : effect_first_frame(e));
+                effect_rehearse(e, o->framed ? o->frame : effect_get_facts(e)->first);
     if (e) add_files(files, read, effect_files(e, &read));
     if (done) return e;
     effect_destroy(e);

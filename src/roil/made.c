@@ -4,7 +4,6 @@
 #include "base/hash.h"
 #include "base/json_text.h"
 #include "base/memory.h"
-#include "base/str.h"
 #include "effect/recipe.h"
 #include "roil/roil_impl.h"
 #include <errno.h>
@@ -36,7 +35,7 @@ static bool hash_file(int file, uint64_t size, hash128 *out) {
 }
 
 int roil_open_input(const roil_effect *e, const char *path, size_t *size) {
-    const char *inside = effect_inside(e->effect);
+    const char *inside = effect_get_facts(e->effect)->inside;
     const char *const *roots, *const *files;
     effect_files(e->effect, &files);
     if (path == files[0]) return file_open_inside(inside, path, SIZE_MAX, size); // its own
@@ -94,11 +93,12 @@ char *roil_describe(roil_effect *e, const roil_making *how) {
     json_t *options = json_array();
     for (size_t i = 0; how->options[i]; i++)
         json_array_append_new(options, json_string(how->options[i]));
+    const char *source = effect_get_facts(e->effect)->source;
     json_t *root = json_pack(
         "{s:i, s:s, s:s, s:s, s:f, s:[f,f,f], s:[i,i], s:o, s:o, s:s, s:s, s:s}", "roil-recipe", 1,
-        "roil", ROIL_VERSION, "kind", how->kind, "effect", effect_source(e->effect), "frame",
-        e->shown, "frames", how->first, how->last, how->step, "size", (int)e->width, (int)e->height,
-        "settings", settings, "options", options, "device", roil_device_name(e->owner), "driver",
+        "roil", ROIL_VERSION, "kind", how->kind, "effect", source, "frame", e->shown, "frames",
+        how->first, how->last, how->step, "size", (int)e->width, (int)e->height, "settings",
+        settings, "options", options, "device", roil_device_name(e->owner), "driver",
         roil_device_driver(e->owner), "inputs", hash_inputs(e));
     if (how->sheet) json_object_set_new(root, "sheet", json_string(how->sheet));
     if (how->part) json_object_set_new(root, "part", json_string(how->part));

@@ -137,7 +137,7 @@ void roil_free_preset(roil_preset *preset) {
 // ---- writing ------------------------------------------------------------------------------------
 
 static void print_preset(const roil_effect *e, const char *name, strbuf *out) {
-    const char *file = path_name(effect_file(e->effect));
+    const char *file = path_name(effect_get_facts(e->effect)->file);
     int length = (int)strcspn(file, "\r\n"); // it stands in a comment
     strbuf_add(out, "-- Preset of %.*s, for --preset %s.\nreturn {\n", length, file, name);
     for (size_t i = 0; i < effect_control_count(e->effect); i++) {
@@ -157,9 +157,9 @@ bool roil_write_preset(roil_effect *e, const char *name) {
     char path[PATH_CAP], root[PATH_CAP];
     if (!is_name(name, strlen(name)))
         return mem_leave(err_set("preset '%.64s' is not a name (letters, digits, _ and -)", name));
-    if (!roil_may_write(e) || !preset_path(path, effect_file(e->effect), name))
+    if (!roil_may_write(e) || !preset_path(path, effect_get_facts(e->effect)->file, name))
         return mem_leave(false);
-    path_folder(root, effect_file(e->effect));
+    path_folder(root, effect_get_facts(e->effect)->file);
     strbuf text = {0};
     print_preset(e, name, &text);
     bool done = file_write_inside(root, path, text.text, text.length);

@@ -1,8 +1,6 @@
 // The description of a sheet: all that whoever plays it has to know.
-#include "base/error.h"
 #include "base/memory.h"
 #include "roil/sheet.h"
-#include <math.h>
 #include <string.h>
 
 json_t *sheet_text(const char *from) {
@@ -79,7 +77,7 @@ json_t *sheet_describe(const roil_sheet *s, const char *file, const roil_sheet_o
     const double width = a->right - a->left, height = a->bottom - a->top, cell = s->cell;
     const double metres = (double)s->height / cell;
     json_t *all = json_object();
-    json_object_set_new(all, "effect", sheet_text(effect_name(s->owner->effect)));
+    json_object_set_new(all, "effect", sheet_text(effect_get_facts(s->owner->effect)->name));
     json_object_set_new(all, "version", json_string(roil_version()));
     json_object_set_new(all, "made", json_null()); // sheet_add_recipe
     json_object_set_new(all, "grid", json_pack("[i, i]", (int)s->columns, (int)s->rows));

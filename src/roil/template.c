@@ -59,7 +59,7 @@ static bool find_file(const roil_effect *e, const char *file, char root[PATH_CAP
         return err_set("template '%.64s' is not a name (letters, digits, _ and -) with .exr or "
                        ".png",
                        file);
-    if (str_copy(root, PATH_CAP, effect_root(e->effect)) && place_in(root, file, out) &&
+    if (str_copy(root, PATH_CAP, effect_get_facts(e->effect)->root) && place_in(root, file, out) &&
         file_exists(out))
         return true;
     if (library_root(e, root) && place_in(root, file, out) && file_exists(out)) return true;
@@ -76,7 +76,7 @@ bool template_new_path(const roil_effect *e, const char *name, char out[PATH_CAP
                        name, sizeof file - 5);
     memcpy(file, name, length);
     memcpy(file + length, ".exr", 5);
-    if (!place_in(effect_root(e->effect), file, out)) return false;
+    if (!place_in(effect_get_facts(e->effect)->root, file, out)) return false;
     return !file_exists(out) || err_set("templates/%s is there already: take another name", file);
 }
 
@@ -122,7 +122,7 @@ static size_t list_templates(const roil_effect *e, roil_template *out, size_t ca
     listing l = {.out = out, .capacity = capacity};
     bool more = library_root(e, library);
     for (size_t i = 0; i < COUNT_OF(kinds); i++)
-        add_folder(&l, effect_root(e->effect), kinds[i], false);
+        add_folder(&l, effect_get_facts(e->effect)->root, kinds[i], false);
     for (size_t i = 0; more && i < COUNT_OF(kinds); i++) add_folder(&l, library, kinds[i], true);
     qsort(out, l.count < capacity ? l.count : capacity, sizeof *out, by_file);
     return l.count;
@@ -242,11 +242,11 @@ static bool adopt_template(const roil_effect *e, const char *file) {
     char root[PATH_CAP], from[PATH_CAP], to[PATH_CAP];
     void *bytes;
     size_t size;
-    if (!find_file(e, file, root, from) || !place_in(effect_root(e->effect), file, to))
+    if (!find_file(e, file, root, from) || !place_in(effect_get_facts(e->effect)->root, file, to))
         return false;
     if (file_exists(to)) return true;
     if (!file_read_inside(root, from, FILE_MAX, &bytes, &size)) return false;
-    bool done = file_write_inside(effect_root(e->effect), to, bytes, size);
+    bool done = file_write_inside(effect_get_facts(e->effect)->root, to, bytes, size);
     mem_free(bytes);
     return done;
 }

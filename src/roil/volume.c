@@ -166,10 +166,11 @@ bool roil_volume_save(roil_volume *v, const char *file) {
     if (strcmp(path_extension(file), "vdb") != 0)
         return mem_leave(err_set("output '%s'; accepted: .vdb", file));
     volume_file *f = mem_alloc(sizeof *f);
-    f->fps = effect_fps(e->effect);
+    const effect_facts *facts = effect_get_facts(e->effect);
+    f->fps = facts->fps;
     f->frame = e->shown;
-    f->time = (e->shown - effect_first_frame(e->effect)) / f->fps;
-    str_copy(f->effect, sizeof f->effect, effect_name(e->effect));
+    f->time = (e->shown - facts->first) / f->fps;
+    str_copy(f->effect, sizeof f->effect, facts->name);
     f->recipe = roil_describe(e, &(roil_making){.kind = "volume",
                                                 .first = v->first,
                                                 .last = v->last,

@@ -1,7 +1,6 @@
 // effect { name = "explosion", fps = 24, frames = 100 } gives the effect's object. Assigned to it:
 // output, linear, depth (images), antialias, camera, sun, sky, lights, update, a function(t, dt),
 // and events.
-#include "base/memory.h"
 #include "script/binding.h"
 #include <ctype.h>
 #include <string.h>
@@ -26,9 +25,9 @@ static int l_effect(lua_State *L) {
     value_check_object(L, 1, who);
     if (s->declared) vm_error(L, "effect { } is called twice; a file holds one effect");
     const char *name = value_get_string(L, 1, who, "name");
-    double fps = value_get_number(L, 1, who, "fps", effect_fps(s->effect));
-    uint32_t frames = value_get_count(L, 1, who, "frames", effect_frames(s->effect));
-    uint32_t first = value_get_count(L, 1, who, "first", effect_first_frame(s->effect));
+    double fps = value_get_number(L, 1, who, "fps", effect_get_facts(s->effect)->fps);
+    uint32_t frames = value_get_count(L, 1, who, "frames", effect_get_facts(s->effect)->frames);
+    uint32_t first = value_get_count(L, 1, who, "first", effect_get_facts(s->effect)->first);
     uint32_t seed = value_get_count(L, 1, who, "seed", 0);
     if (name) effect_set_name(s->effect, name);
     effect_set_author(s->effect, get_line(L, "author"), get_line(L, "licence"));
@@ -38,7 +37,7 @@ static int l_effect(lua_State *L) {
     s->declared = true;
     object_new(L, who, sizeof(char));
     lua_newtable(L); // what can be read: this, and what was assigned
-    lua_pushstring(L, effect_name(s->effect));
+    lua_pushstring(L, effect_get_facts(s->effect)->name);
     lua_setfield(L, -2, "name");
     lua_pushnumber(L, fps);
     lua_setfield(L, -2, "fps");
@@ -54,12 +53,12 @@ static int l_effect(lua_State *L) {
 
 // ---- assignments ------------------------------------------------------------------------------
 
-static void set_picture(lua_State *L, const char *key, bool (*set)(effect *, graph_image)) {
+static void set_picture(lua_State *L, const char *key, effect_picture which) {
     graph_image image;
     if (!value_image(L, 3, &image))
         vm_error(L, "effect: '%s' takes an image, such as the result of a pass; got %s", key,
                  object_kind(L, 3));
-    if (!set(script_of(L)->effect, image)) script_raise(L);
+    if (!effect_set_picture(script_of(L)->effect, which, image)) script_raise(L);
 }
 
 // Copies the fields that are set; the others keep their default. Both arrays have `count` pointers.
@@ -125,11 +124,11 @@ static int l_newindex(lua_State *L) {
     const char *key = luaL_checkstring(L, 2);
     script_require_loading(L, "assigning to the effect");
     if (strcmp(key, "output") == 0)
-        set_picture(L, key, effect_set_output);
+        set_picture(L, key, EFFECT_OUTPUT);
     else if (strcmp(key, "linear") == 0)
-        set_picture(L, key, effect_set_linear);
+        set_picture(L, key, EFFECT_LINEAR);
     else if (strcmp(key, "depth") == 0)
-        set_picture(L, key, effect_set_depth);
+        set_picture(L, key, EFFECT_DEPTH);
     else if (strcmp(key, "camera") == 0 || strcmp(key, "sun") == 0 || strcmp(key, "sky") == 0)
         set_scene(L, key);
     else if (strcmp(key, "lights") == 0)

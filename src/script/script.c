@@ -43,8 +43,8 @@ void script_raise(lua_State *L) {
 
 static void script_renew(void *user) {
     script *s = user;
-    s->frame =
-        (time_limit){.what = "frame", .limit = effect_seconds(s->effect) / TIME_LIMIT_FRAMES};
+    s->frame = (time_limit){.what = "frame",
+                            .limit = effect_get_facts(s->effect)->seconds / TIME_LIMIT_FRAMES};
 }
 
 static bool script_enter(script *s, int args, int results) {
@@ -170,7 +170,7 @@ static int open_bindings(lua_State *L) {
 // Folder of the effect as its user wrote it, with a '/' at the end; "" for the current one. Of a
 // bundle its name.
 static void shown_folder(const effect *e, char out[PATH_CAP]) {
-    const char *file = effect_file(e), *bundle = effect_bundle(e);
+    const char *file = effect_get_facts(e)->file, *bundle = effect_get_facts(e)->bundle;
     size_t length = (size_t)(path_name(file) - file);
     if (bundle)
         snprintf(out, PATH_CAP, "%s/", bundle);
@@ -180,16 +180,18 @@ static void shown_folder(const effect *e, char out[PATH_CAP]) {
 
 static bool script_run_file(script *s, const char *prelude_folder) {
     char prelude[PATH_CAP], name[PATH_CAP];
-    const char *file = effect_file(s->effect), *bundle = effect_bundle(s->effect), *shown = file;
+    const char *file = effect_get_facts(s->effect)->file,
+               *bundle = effect_get_facts(s->effect)->bundle, *shown = file;
     if (bundle) shown = path_join(name, bundle, path_name(file)) ? name : bundle;
     return vm_protect(s->vm, open_bindings, NULL, s->limits.load) &&
            path_join(prelude, prelude_folder, "prelude.lua") &&
            vm_run_file(s->vm, prelude, "prelude.lua", s->limits.load, true) &&
-           vm_run_file_inside(s->vm, effect_inside(s->effect), file, shown, s->limits.load);
+           vm_run_file_inside(s->vm, effect_get_facts(s->effect)->inside, file, shown,
+                              s->limits.load);
 }
 
 static bool is_complete(const script *s) {
-    const char *file = effect_file(s->effect);
+    const char *file = effect_get_facts(s->effect)->file;
     if (!s->declared)
         return err_set("%s: no effect is declared; begin with local fx = effect { name = ... }",
                        file);

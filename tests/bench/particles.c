@@ -108,7 +108,8 @@ static bool build(bench *b, gpu *g, shader_library *library, const char *root) {
            set(b, "burst", (float)b->count) && set(b, "lifetime_min", 1e6f) &&
            set(b, "lifetime_max", 1e6f) && set(b, "radius", 1) &&
            pass_set_option(b->pass, "integrator", b->euler ? "euler" : "rk2") &&
-           pass_declare(b->pass) && effect_set_output(b->e, pass_output(b->pass, "particles")) &&
+           pass_declare(b->pass) &&
+           effect_set_picture(b->e, EFFECT_OUTPUT, pass_output(b->pass, "particles")) &&
            effect_build(b->e, 16, 16);
 }
 

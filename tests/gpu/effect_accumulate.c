@@ -48,7 +48,7 @@ static stage compile_stage(gpu *device, setup s) { // not yet allocated
     const char *kept[] = {"color", "truth"};
     for (int i = 0; i < 2; i++) graph_add_output(effect_graph(e), pass_output(wall, kept[i]));
     graph_add_output(effect_graph(e), pass_output(gather, "state"));
-    gpu_test_ok(effect_set_output(e, pass_output(gather, "color")));
+    gpu_test_ok(effect_set_picture(e, EFFECT_OUTPUT, pass_output(gather, "color")));
     gpu_test_ok(effect_compile(e));
     return (stage){e, wall, gather};
 }

@@ -10,7 +10,7 @@ static effect *open_trail(gpu *device) {
     effect *e = open_effect(&(effect_desc){.device = device});
     pass *trail = add(e, NULL, "trail.comp");
     gpu_test_ok(pass_declare(trail));
-    gpu_test_ok(effect_set_output(e, pass_output(trail, "count")));
+    gpu_test_ok(effect_set_picture(e, EFFECT_OUTPUT, pass_output(trail, "count")));
     return e;
 }
 
@@ -88,7 +88,7 @@ static effect *open_player(gpu *device, float offset, field_grid **grid) {
     gpu_test_ok(first >= 0);
     pass *p = add_march(e, field_grid_channel(effect_memory(e), *grid, first, components));
     gpu_test_ok(pass_declare(p));
-    gpu_test_ok(effect_set_output(e, pass_output(p, "color")));
+    gpu_test_ok(effect_set_picture(e, EFFECT_OUTPUT, pass_output(p, "color")));
     gpu_test_ok(effect_compile(e));
     return e;
 }
@@ -133,7 +133,7 @@ static effect *open_mesh(gpu *device, scene_mesh **mesh) {
     pass *p = add(e, "geometry", NULL);
     gpu_test_ok(pass_set_option(p, "mode", "raster")); // rays need no vertices
     gpu_test_ok(pass_add_mesh(p, *mesh) && pass_declare(p));
-    gpu_test_ok(effect_set_output(e, pass_output(p, "albedo")));
+    gpu_test_ok(effect_set_picture(e, EFFECT_OUTPUT, pass_output(p, "albedo")));
     gpu_test_ok(effect_compile(e));
     return e;
 }
@@ -165,7 +165,7 @@ static effect *open_sky(gpu *device) {
     s->sky.strength = number(e, 1);
     gpu_test_ok(s->sky.image);
     pass *p = add(e, NULL, "sky_probe.comp");
-    gpu_test_ok(pass_declare(p) && effect_set_output(e, pass_output(p, "color")));
+    gpu_test_ok(pass_declare(p) && effect_set_picture(e, EFFECT_OUTPUT, pass_output(p, "color")));
     gpu_test_ok(effect_compile(e));
     return e;
 }
@@ -199,7 +199,7 @@ static void rehearsal_finds_what_a_frame_would(void **state) {
     effect_set_hooks(e, &(effect_hooks){.call = call_hook});
     pass *p = add_march(e, block(e, field_call(effect_memory(e), 1, 7)));
     gpu_test_ok(pass_declare(p));
-    gpu_test_ok(effect_set_output(e, pass_output(p, "color")));
+    gpu_test_ok(effect_set_picture(e, EFFECT_OUTPUT, pass_output(p, "color")));
     gpu_test_ok(effect_compile(e));
     gpu_test_ok(effect_rehearse(e, 1));
     assert_false(effect_rehearse(e, 1000));

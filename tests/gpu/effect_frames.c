@@ -213,7 +213,7 @@ static effect *open_trail(gpu *device, script *s) {
             e, &(effect_hooks){.update = update_hook, .destroy = destroy_hook, .user = s});
     pass *trail = add(e, NULL, "trail.comp");
     gpu_test_ok(pass_declare(trail));
-    gpu_test_ok(effect_set_output(e, pass_output(trail, "count")));
+    gpu_test_ok(effect_set_picture(e, EFFECT_OUTPUT, pass_output(trail, "count")));
     gpu_test_ok(effect_build(e, SIZE, SIZE));
     return e;
 }

@@ -24,7 +24,7 @@ static void build(stage *s) {
     gpu_test_ok(pass_set_image(s->shown, "exposure", pass_output(s->meter, "exposure")));
     gpu_test_ok(pass_declare(s->shown));
     graph_add_output(effect_graph(s->e), pass_output(s->meter, "exposure"));
-    gpu_test_ok(effect_set_output(s->e, pass_output(s->shown, "color")));
+    gpu_test_ok(effect_set_picture(s->e, EFFECT_OUTPUT, pass_output(s->shown, "color")));
     gpu_test_ok(effect_build(s->e, WIDTH, HEIGHT));
 }
 

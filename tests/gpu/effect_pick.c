@@ -37,7 +37,7 @@ static void a_pixel_shows_what_its_ray_meets(void **state) {
     gpu_test_ok(alone && kind);
     scene_instances *ring = add_ring(e, kind);
     gpu_test_ok(pass_add_mesh(p, alone) && pass_add_instances(p, ring));
-    gpu_test_ok(pass_declare(p) && effect_set_output(e, pass_output(p, "depth")));
+    gpu_test_ok(pass_declare(p) && effect_set_picture(e, EFFECT_OUTPUT, pass_output(p, "depth")));
     gpu_test_ok(effect_check_settings(e) && effect_build(e, WIDTH, HEIGHT));
     gpu_test_ok(effect_render(e, 1, false));
     gpu_image *image = graph_get_image(effect_graph(e), effect_get_picture(e, EFFECT_OUTPUT));
@@ -91,7 +91,7 @@ static effect *open_yard(gpu *device, float turn) {
     lone->position = triple(e, 30, 0, 5);
     gpu_test_ok(pass_add_mesh(p, floor) && pass_add_mesh(p, roof) && pass_add_mesh(p, crate) &&
                 pass_add_mesh(p, lone) && pass_add_instances(p, add_ring(e, kind)));
-    gpu_test_ok(pass_declare(p) && effect_set_output(e, pass_output(p, "depth")));
+    gpu_test_ok(pass_declare(p) && effect_set_picture(e, EFFECT_OUTPUT, pass_output(p, "depth")));
     gpu_test_ok(effect_check_settings(e) && effect_build(e, WIDTH, HEIGHT));
     gpu_test_ok(effect_render(e, 1, false));
     return e;

@@ -72,7 +72,7 @@ static inline pass *add_march(effect *e, const field *density) {
 
 static inline void finish(effect *e, pass *p, uint32_t width, uint32_t height) {
     gpu_test_ok(pass_declare(p));
-    gpu_test_ok(effect_set_output(e, pass_output(p, "color")));
+    gpu_test_ok(effect_set_picture(e, EFFECT_OUTPUT, pass_output(p, "color")));
     gpu_test_ok(effect_check_settings(e));
     gpu_test_ok(effect_build(e, width, height));
 }

@@ -46,7 +46,7 @@ static inline void swarm_field(const swarm *s, const char *name, const field *va
 
 static inline void swarm_declare(const swarm *s) {
     gpu_test_ok(pass_declare(s->pass));
-    gpu_test_ok(effect_set_output(s->e, pass_output(s->pass, "particles")));
+    gpu_test_ok(effect_set_picture(s->e, EFFECT_OUTPUT, pass_output(s->pass, "particles")));
     gpu_test_ok(effect_check_settings(s->e));
 }
 

@@ -5,7 +5,7 @@
 
 static void set_output(stage *s, pass *p) {
     ok(pass_declare(p));
-    ok(effect_set_output(s->e, pass_output(p, "color")));
+    ok(effect_set_picture(s->e, EFFECT_OUTPUT, pass_output(p, "color")));
 }
 
 // ---- shaders and fields -------------------------------------------------------------------------
@@ -45,8 +45,8 @@ static void effect_of_all_built_in_passes_is_sound(void **state) {
     ok(final && pass_set_image(final, "source", pass_output(over, "color")));
     ok(pass_set_image(final, "bloom", pass_output(bloom, "color")));
     set_output(s, final);
-    ok(effect_set_linear(e, pass_output(final, "linear")));
-    ok(effect_set_depth(e, pass_output(geometry, "depth")));
+    ok(effect_set_picture(e, EFFECT_LINEAR, pass_output(final, "linear")));
+    ok(effect_set_picture(e, EFFECT_DEPTH, pass_output(geometry, "depth")));
     ok(effect_check(e));
     assert_int_equal(effect_pass_count(e), 8);
 }
@@ -157,7 +157,7 @@ static void volume_is_no_picture(void **state) {
     ok(grid);
     graph_image volume = pass_output(effect_get_pass(s->e, 0), "values");
     assert_true(volume.id != 0);
-    assert_false(effect_set_output(s->e, volume));
+    assert_false(effect_set_picture(s->e, EFFECT_OUTPUT, volume));
     assert_error("the picture of an effect is 2D");
     pass *final = effect_add_pass(s->e, "final", NULL, NULL);
     ok(final);
@@ -183,11 +183,11 @@ static void labels_are_unique_names(void **state) {
 
 static void timeline_has_limits(void **state) {
     stage *s = *state;
-    assert_true(effect_fps(s->e) == 24 && effect_frames(s->e) == 1);
-    assert_int_equal(effect_first_frame(s->e), 1);
+    assert_true(effect_get_facts(s->e)->fps == 24 && effect_get_facts(s->e)->frames == 1);
+    assert_int_equal(effect_get_facts(s->e)->first, 1);
     ok(effect_set_timeline(s->e, 29.97, 240, 1001));
-    assert_true(effect_fps(s->e) == 29.97 && effect_frames(s->e) == 240);
-    assert_int_equal(effect_first_frame(s->e), 1001);
+    assert_true(effect_get_facts(s->e)->fps == 29.97 && effect_get_facts(s->e)->frames == 240);
+    assert_int_equal(effect_get_facts(s->e)->first, 1001);
     const double rates[] = {0, -24, 1001, (double)NAN, (double)INFINITY};
     for (size_t i = 0; i < COUNT_OF(rates); i++) {
         assert_false(effect_set_timeline(s->e, rates[i], 10, 1));
@@ -196,7 +196,7 @@ static void timeline_has_limits(void **state) {
     assert_false(effect_set_timeline(s->e, 24, 0, 1));
     assert_error("frames is 0; accepted: 1 to 1000000");
     assert_false(effect_set_timeline(s->e, 24, 1000001, 1));
-    assert_true(effect_fps(s->e) == 29.97 && effect_frames(s->e) == 240);
+    assert_true(effect_get_facts(s->e)->fps == 29.97 && effect_get_facts(s->e)->frames == 240);
 }
 
 static void bake_has_limits(void **state) {

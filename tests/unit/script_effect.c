@@ -32,10 +32,10 @@ static void declarations_arrive(void **state) {
     (void)state;
     effect *e = load("local fx = effect { name = 'burst', fps = 30, frames = 7, first = 3 }"
                      "assert(fx.name == 'burst' and fx.fps == 30 and fx.frames == 7)" END);
-    assert_string_equal(effect_name(e), "burst");
-    assert_float_equal(effect_fps(e), 30, 0);
-    assert_int_equal(effect_frames(e), 7);
-    assert_int_equal(effect_first_frame(e), 3);
+    assert_string_equal(effect_get_facts(e)->name, "burst");
+    assert_float_equal(effect_get_facts(e)->fps, 30, 0);
+    assert_int_equal(effect_get_facts(e)->frames, 7);
+    assert_int_equal(effect_get_facts(e)->first, 3);
     assert_int_not_equal(effect_get_picture(e, EFFECT_OUTPUT).id, 0);
     assert_int_equal(effect_get_picture(e, EFFECT_DEPTH).id, 0);
     effect_destroy(e);
