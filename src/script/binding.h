@@ -15,6 +15,7 @@ typedef struct script {
     time_limit frame;    // the limit of this frame
     bool acting;         // functions of frames or events are running, not functions of time
     bool loading;        // the file is running: only then can things be declared
+    const char *making;  // what is being made, or was when an error came; or NULL
     const char *unsound; // what an error that the script caught left incomplete; or NULL
     bool declared;       // effect { } was called
     int update;          // registry reference of fx.update, or LUA_NOREF
@@ -40,7 +41,7 @@ field_context script_context(lua_State *L); // for time 0, with the parameters' 
 // ---- objects ----------------------------------------------------------------------------------
 
 // Metatables, by name: "field", "palette", "image", "pass result", "sequence", ...
-void object_type(lua_State *L, const char *name, const luaL_Reg *methods);
+void object_type(lua_State *L, const char *name, const luaL_Reg *methods); // NULL: none
 void *object_new(lua_State *L, const char *name, size_t size);
 void *object_test(lua_State *L, int index, const char *name); // NULL when it is something else
 // Describes a value for messages: "a number", "an image", "instances", "nil". May push values.
@@ -165,14 +166,21 @@ const slices_object *slices_self(lua_State *L, const char *method, const char *e
 // Reads a list of lights into the effect's memory. Returns how many there are.
 size_t value_lights(lua_State *L, int index, const char *who, scene_light **out);
 
+// An error between these two, if the script catches it, leaves the effect incomplete. The second
+// raises the current error unless all is `done`.
+void script_make(lua_State *L, const char *who);
+void script_made(lua_State *L, bool done);
 // A pass of a built-in type by the table at `table`, not declared yet. Keys among `own` are left to
-// the caller. script.unsound is `who` until the caller has declared it.
+// the caller, which calls script_made when it has declared it.
 pass *pass_make(lua_State *L, const char *type, const char *who, int table, const value_desc *own);
 // A group of templates by the table at 2 (l_templates.c): pass_make, with its picture and count,
 // and its size and lifetime, which are among `own`.
 pass *templates_make(lua_State *L, const char *type, const value_desc *own,
                      const struct picture **image, uint32_t *count);
 extern const char templates_example[]; // of keys
+// Calls script_made: `grid` is what a pass fills, which is declared now. NULL: raises the error.
+void grid_made(lua_State *L, field_grid *grid, const char *name, pass *p);
+void grid_push_field(lua_State *L, field_grid *grid, const char *name); // raises for no field
 // What stands for a pass that is declared: `from` takes it, and its outputs are images by name.
 void pass_push(lua_State *L, pass *p);
 
@@ -189,25 +197,11 @@ bool script_start(void *user);                           // these three are in e
 bool script_frame(void *user, double time, double dt);
 bool script_event(void *user, const struct effect_happening *what);
 
-void l_effect_open(lua_State *L);
-void l_events_open(lua_State *L);
-void l_param_open(lua_State *L);
-void l_field_open(lua_State *L);
-void l_curve_open(lua_State *L);
-void l_palette_open(lua_State *L);
-void l_layers_open(lua_State *L);
-void l_grid_open(lua_State *L);
-void l_scene_open(lua_State *L);
-void l_light_open(lua_State *L);
-void l_material_open(lua_State *L);
-void l_instances_open(lua_State *L);
-void l_scatter_open(lua_State *L);
-void l_pass_open(lua_State *L);
-void l_air_open(lua_State *L);
-void l_slices_open(lua_State *L);
-void l_point_lights_open(lua_State *L);
-void l_particles_open(lua_State *L);
-void l_shell_open(lua_State *L);
-void l_voxels_open(lua_State *L);
-void l_deposit_open(lua_State *L);
-void l_image_open(lua_State *L);
+// Functions of effect files; their other types and functions are registered by the second.
+typedef int script_word(lua_State *L);
+script_word l_camera, l_curve, l_image, l_layers, l_material, l_mesh, l_node, l_orbit, l_param,
+    l_particles, l_pick, l_point_light, l_point_lights, l_scatter, l_sky, l_sphere_light,
+    l_spot_light, l_sun;
+typedef void script_opener(lua_State *L);
+script_opener l_air_open, l_deposit_open, l_effect_open, l_field_open, l_grid_open,
+    l_instances_open, l_palette_open, l_pass_open, l_shell_open, l_slices_open, l_voxels_open;

@@ -114,8 +114,7 @@ static int l_air(lua_State *L) {
     if (lua_gettop(L) != 1 || !value_is_plain_table(L, 1))
         vm_error(L, "%s takes named values, as in %s { size = {64, 64, 96}, voxel_size = 0.05 }",
                  who, who);
-    script *s = script_of(L);
-    const char *unsound = s->unsound, *variable = value_name_or_variable(L, 1, who);
+    const char *variable = value_name_or_variable(L, 1, who);
     air_object *object = object_new(L, who, sizeof *object);
     int result = lua_gettop(L);
     pass *p = pass_make(L, who, who, 1, script_object_find(who)->keys);
@@ -125,13 +124,10 @@ static int l_air(lua_State *L) {
     if (value_get(L, 1, "boundary") != LUA_TNIL) set_boundary(L, p);
     object->pass = p;
     object->grid = type->open(p, &desc);
-    if (!object->grid) script_raise(L);
+    if (!object->grid || !pass_air_check(p)) script_raise(L);
     object->time_step = pass_air_time_step(p);
     object->voxel_size = desc.voxel_size;
-    effect_add_grid(s->effect, object->grid);
-    effect_name_grid(s->effect, object->grid, variable);
-    if (!pass_declare(p) || !pass_air_check(p)) script_raise(L);
-    s->unsound = unsound;
+    grid_made(L, object->grid, variable, p);
     lua_pushvalue(L, result);
     return 1;
 }
@@ -144,11 +140,6 @@ static const air_object *self(lua_State *L, const char *method, const char *exam
         vm_error(L, "%s takes a table, as in air:%s { %s }: mind the ':'", method, method, example);
     script_require_loading(L, method);
     return object;
-}
-
-// motion = curve { ... }: the movement of all meshes of the table at 2.
-static const field *read_motion(lua_State *L, const char *who) {
-    return value_get_uniform(L, 2, who, "motion", 3, NULL);
 }
 
 static void set_motion(lua_State *L, const char *who, mesh_object *mesh, const field *motion) {
@@ -166,8 +157,9 @@ static void set_motion(lua_State *L, const char *who, mesh_object *mesh, const f
     mesh->at = mesh->placed = true;
 }
 
+// motion = curve { ... }: the movement of all meshes of the table at 2.
 static void move_meshes(lua_State *L, const char *who) {
-    const field *motion = read_motion(L, who);
+    const field *motion = value_get_uniform(L, 2, who, "motion", 3, NULL);
     lua_Integer count = motion ? (lua_Integer)lua_rawlen(L, 2) : 0;
     if (motion && count == 0) set_motion(L, who, NULL, motion);
     for (lua_Integer i = 1; i <= count; i++) {
@@ -180,13 +172,10 @@ static void move_meshes(lua_State *L, const char *who) {
 static int l_source(lua_State *L) {
     const air_object *air = self(L, "source", "mesh { \"data/ball.obj\" }");
     static const value_desc own[] = {{.name = "motion"}, {.name = NULL}};
-    script *s = script_of(L);
-    const char *unsound = s->unsound;
     pass *source = pass_make(L, type_of(L)->source, "source", 2, own);
     move_meshes(L, "source");
     vm_charge_memory(L, lua_rawlen(L, 2) * BODY_COST);
-    if (!pass_declare(source) || !pass_air_add_source(air->pass, source)) script_raise(L);
-    s->unsound = unsound;
+    script_made(L, pass_declare(source) && pass_air_add_source(air->pass, source));
     return 0;
 }
 
@@ -194,14 +183,10 @@ static int l_templates(lua_State *L) {
     static const value_desc own[] = {
         {.name = "count"}, {.name = "size"}, {.name = "lifetime"}, {.name = NULL}};
     const air_object *air = self(L, "templates", templates_example);
-    script *s = script_of(L);
-    const char *unsound = s->unsound;
     const struct picture *image;
     uint32_t count;
     pass *group = templates_make(L, type_of(L)->templates, own, &image, &count);
-    if (!pass_declare(group) || !pass_air_add_templates(air->pass, group, image, count))
-        script_raise(L);
-    s->unsound = unsound;
+    script_made(L, pass_declare(group) && pass_air_add_templates(air->pass, group, image, count));
     return 0;
 }
 
@@ -322,11 +307,9 @@ static int l_index(lua_State *L) {
         value_push_box(L, air->grid->box);
     } else {
         script_require_loading(L, "a field of simulated air");
-        int components, channel = pass_air_use(air->pass, name, &components);
-        if (channel < 0) refuse_name(L, air->pass, name);
-        const field *node = field_grid_channel(script_memory(L), air->grid, channel, components);
-        effect_note_reading(script_of(L)->effect, air->grid, name, node);
-        field_push(L, node);
+        int components;
+        if (pass_air_use(air->pass, name, &components) < 0) refuse_name(L, air->pass, name);
+        grid_push_field(L, air->grid, name);
     }
     return 1;
 }

@@ -1,7 +1,5 @@
 // curve { {0, 1}, {0.5, 3}, shape = "cubic", period = 2 }: keys of time (s) and value.
-#include "base/memory.h"
 #include "script/binding.h"
-#include <math.h>
 #include <string.h>
 
 enum {
@@ -19,7 +17,7 @@ static int read_value(lua_State *L, int i, float out[4]) {
     return count;
 }
 
-static int l_curve(lua_State *L) {
+int l_curve(lua_State *L) {
     script_require_loading(L, who);
     const script_object *row = value_check_object(L, 1, who);
     lua_Unsigned count = lua_rawlen(L, 1);
@@ -55,8 +53,4 @@ static int l_curve(lua_State *L) {
     script_note_place(L, c, who);
     field_push(L, field_curve(script_memory(L), c));
     return 1;
-}
-
-void l_curve_open(lua_State *L) {
-    lua_register(L, who, l_curve);
 }

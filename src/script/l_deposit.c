@@ -7,7 +7,6 @@
 enum { RESOLUTION = 32 };
 
 typedef struct deposit_object {
-    pass *pass;
     field_grid *grid;
 } deposit_object;
 
@@ -17,20 +16,15 @@ static int l_deposit(lua_State *L) {
         vm_error(L,
                  "deposit takes particles and named values, as in deposit { chaff, box = { min = "
                  "{-1, -1, 0}, max = {1, 1, 2} } }");
-    script *s = script_of(L);
-    const char *unsound = s->unsound, *variable = value_name_or_variable(L, 1, "deposit");
+    const char *variable = value_name_or_variable(L, 1, "deposit");
     deposit_object *object = object_new(L, "deposit", sizeof *object);
     int result = lua_gettop(L);
-    object->pass = pass_make(L, "deposit", "deposit", 1, script_object_find("deposit")->keys);
+    pass *p = pass_make(L, "deposit", "deposit", 1, script_object_find("deposit")->keys);
     pass_deposit_desc desc = {.resolution =
                                   value_get_count(L, 1, "deposit", "resolution", RESOLUTION)};
     value_get_box(L, 1, "deposit", &desc.box);
-    object->grid = pass_deposit_open(object->pass, &desc);
-    if (!object->grid) script_raise(L);
-    effect_add_grid(s->effect, object->grid);
-    effect_name_grid(s->effect, object->grid, variable);
-    if (!pass_declare(object->pass)) script_raise(L);
-    s->unsound = unsound;
+    object->grid = pass_deposit_open(p, &desc);
+    grid_made(L, object->grid, variable, p);
     lua_pushvalue(L, result);
     return 1;
 }
@@ -44,11 +38,7 @@ static int l_index(lua_State *L) {
         return 1;
     }
     script_require_loading(L, "a field of particles");
-    int components, channel = object->grid->find_field(object->grid, name, &components);
-    if (channel < 0) script_raise(L);
-    const field *node = field_grid_channel(script_memory(L), object->grid, channel, components);
-    effect_note_reading(script_of(L)->effect, object->grid, name, node);
-    field_push(L, node);
+    grid_push_field(L, object->grid, name);
     return 1;
 }
 

@@ -209,7 +209,7 @@ static void read_vector(lua_State *L, int table, int number, const char *name, f
 }
 
 // pick(x, y), pick { origin, direction }, pick(event.ray): returns what the ray hits, or nil.
-static int l_pick(lua_State *L) {
+int l_pick(lua_State *L) {
     effect *e = script_of(L)->effect;
     float origin[3], direction[3];
     scene_hit hit;
@@ -327,8 +327,4 @@ bool script_event(void *user, const effect_happening *what) {
     script *s = user;
     event_call call = {s, what};
     return events_act(s, run_event, &call);
-}
-
-void l_events_open(lua_State *L) {
-    lua_register(L, "pick", l_pick);
 }

@@ -184,32 +184,20 @@ static int l_kind(lua_State *L) {
 
 // ---- arithmetic -------------------------------------------------------------------------------
 
-static int combine_fields(lua_State *L, const char *kind, const char *sign, int count) {
+typedef struct arithmetic {
+    const char *metamethod, *kind, *sign;
+    int count; // of operands
+} arithmetic;
+
+// Its upvalue says which.
+static int l_arithmetic(lua_State *L) {
+    const arithmetic *a = lua_touserdata(L, lua_upvalueindex(1));
     const field *args[FIELD_MAX_ARGS] = {0};
     script_require_loading(L, "arithmetic on a field or parameter");
-    for (int i = 0; i < count; i++)
-        args[i] = value_field(L, i + 1, sign, i == 0 ? "left side" : "right side", 0);
-    field_push(L, field_make(script_memory(L), kind, args, NULL));
+    for (int i = 0; i < a->count; i++)
+        args[i] = value_field(L, i + 1, a->sign, i == 0 ? "left side" : "right side", 0);
+    field_push(L, field_make(script_memory(L), a->kind, args, NULL));
     return 1;
-}
-
-static int l_add(lua_State *L) {
-    return combine_fields(L, "add", "+", 2);
-}
-static int l_sub(lua_State *L) {
-    return combine_fields(L, "sub", "-", 2);
-}
-static int l_mul(lua_State *L) {
-    return combine_fields(L, "mul", "*", 2);
-}
-static int l_div(lua_State *L) {
-    return combine_fields(L, "div", "/", 2);
-}
-static int l_pow(lua_State *L) {
-    return combine_fields(L, "pow", "^", 2);
-}
-static int l_unm(lua_State *L) {
-    return combine_fields(L, "negate", "-", 1);
 }
 
 static int l_compare(lua_State *L) {
@@ -390,14 +378,14 @@ static void open_kinds(lua_State *L, int methods) {
 }
 
 void l_field_open(lua_State *L) {
-    static const luaL_Reg operators[] = {
-        {"__add", l_add},           {"__sub", l_sub}, {"__mul", l_mul},    {"__div", l_div},
-        {"__pow", l_pow},           {"__unm", l_unm}, {"__lt", l_compare}, {"__le", l_compare},
-        {"__tostring", l_tostring}, {NULL, NULL},
-    };
+    static const arithmetic operators[] = {{"__add", "add", "+", 2}, {"__sub", "sub", "-", 2},
+                                           {"__mul", "mul", "*", 2}, {"__div", "div", "/", 2},
+                                           {"__pow", "pow", "^", 2}, {"__unm", "negate", "-", 1}};
+    static const luaL_Reg others[] = {
+        {"__lt", l_compare}, {"__le", l_compare}, {"__tostring", l_tostring}, {NULL, NULL}};
     static const luaL_Reg own[] = {{"get", l_get},   {"set", l_set},   {"toggle", l_toggle},
                                    {"bake", l_bake}, {"tile", l_tile}, {NULL, NULL}};
-    object_type(L, "field", operators);
+    object_type(L, "field", others);
     lua_newtable(L);
     int methods = lua_gettop(L);
     luaL_setfuncs(L, own, 0);
@@ -406,6 +394,11 @@ void l_field_open(lua_State *L) {
     lua_pushvalue(L, methods);
     lua_pushcclosure(L, l_index, 1);
     lua_setfield(L, -2, "__index");
+    for (size_t i = 0; i < COUNT_OF(operators); i++) {
+        lua_pushlightuserdata(L, (void *)(uintptr_t)&operators[i]);
+        lua_pushcclosure(L, l_arithmetic, 1);
+        lua_setfield(L, -2, operators[i].metamethod);
+    }
     lua_pop(L, 2);
     lua_register(L, "glsl", l_glsl);
 }

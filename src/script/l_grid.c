@@ -144,7 +144,23 @@ static int l_raw(lua_State *L) {
     return push_sequence(L, &desc, &how);
 }
 
-// ---- what a sequence has ----------------------------------------------------------------------
+// ---- what a grid has --------------------------------------------------------------------------
+
+void grid_made(lua_State *L, field_grid *grid, const char *name, pass *p) {
+    effect *e = script_of(L)->effect;
+    if (!grid) script_raise(L);
+    effect_add_grid(e, grid);
+    effect_name_grid(e, grid, name);
+    script_made(L, pass_declare(p));
+}
+
+void grid_push_field(lua_State *L, field_grid *grid, const char *name) {
+    int components, channel = grid->find_field(grid, name, &components);
+    if (channel < 0) script_raise(L);
+    const field *node = field_grid_channel(script_memory(L), grid, channel, components);
+    effect_note_reading(script_of(L)->effect, grid, name, node);
+    field_push(L, node);
+}
 
 void value_push_box(lua_State *L, box3 box) {
     lua_createtable(L, 0, 2);
@@ -164,12 +180,7 @@ static int l_sequence_index(lua_State *L) {
         lua_pushnumber(L, sequence_duration(object->sequence));
     } else {
         script_require_loading(L, "a grid of a sequence");
-        int components, channel = sequence_channel(object->sequence, name, &components);
-        if (channel < 0) script_raise(L);
-        const field_grid *grid = sequence_grid(object->sequence);
-        const field *node = field_grid_channel(script_memory(L), grid, channel, components);
-        effect_note_reading(script_of(L)->effect, grid, name, node);
-        field_push(L, node);
+        grid_push_field(L, sequence_grid(object->sequence), name);
     }
     return 1;
 }
@@ -226,15 +237,6 @@ static uint32_t read_whole(lua_State *L, const char *who, const char *key, uint3
     return value;
 }
 
-// An error before the object is complete makes the effect invalid.
-static const char *begin_making(lua_State *L, const char *who) {
-    script *s = script_of(L);
-    const char *before = s->unsound;
-    vm_charge_memory(L, SEQUENCE_COST);
-    s->unsound = who;
-    return before;
-}
-
 static void read_size(lua_State *L, uint32_t out[3]) {
     float size[3] = {64, 64, 64};
     value_get_vector(L, 2, "bake", "size", size);
@@ -255,10 +257,10 @@ int l_bake(lua_State *L) {
     };
     read_size(L, desc.size);
     const char *name = value_name_or_variable(L, 2, "bake");
-    const char *unsound = begin_making(L, "bake");
+    vm_charge_memory(L, SEQUENCE_COST);
+    script_make(L, "bake");
     field_grid *grid = effect_add_bake(e, node, &desc);
-    if (!grid) script_raise(L);
-    script_of(L)->unsound = unsound;
+    script_made(L, grid);
     effect_name_grid(e, grid, name);
     field_push(L, field_grid_channel(script_memory(L), grid, 0, node->components));
     return 1;
@@ -273,9 +275,10 @@ int l_tile(lua_State *L) {
         .octaves = (int)read_whole(L, "tile", "octaves", 1, 1, 12),
         .levels = value_get_bool(L, 2, "tile", "levels", true),
     };
-    const char *unsound = begin_making(L, "tile");
+    vm_charge_memory(L, SEQUENCE_COST);
+    script_make(L, "tile");
     const field *made = effect_add_tile(script_of(L)->effect, noise, &desc);
-    script_of(L)->unsound = unsound;
+    script_made(L, true); // what is not made is refused below
     field_push(L, made);
     return 1;
 }

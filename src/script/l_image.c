@@ -1,6 +1,5 @@
 // Pictures from files: image "templates/source.exr". The function that takes one says what its
 // numbers mean.
-#include "base/memory.h"
 #include "media/picture.h"
 #include "script/binding.h"
 #include <string.h>
@@ -12,7 +11,7 @@ const picture_object *value_picture(lua_State *L, int index) {
 }
 
 // image { "templates/source.exr" }, or image "templates/source.exr".
-static int l_image(lua_State *L) {
+int l_image(lua_State *L) {
     script_require_loading(L, "image");
     if (value_is_plain_table(L, 1)) {
         value_check_keys(L, 1, "image", NULL, 0);
@@ -32,10 +31,4 @@ static int l_image(lua_State *L) {
     if (!object->picture) script_raise(L);
     vm_charge_memory(L, 4 * sizeof(float) * object->picture->width * object->picture->height);
     return 1;
-}
-
-void l_image_open(lua_State *L) {
-    static const luaL_Reg none[] = {{NULL, NULL}};
-    object_type(L, "picture", none);
-    lua_register(L, "image", l_image);
 }

@@ -84,7 +84,7 @@ static void take_shared(lua_State *L, layer_list *list) {
 
 // The prelude's layers calls it with a table that it has checked, for a copy with fields in the
 // place of numbers.
-static int l_layers(lua_State *L) {
+int l_layers(lua_State *L) {
     effect *e = script_of(L)->effect;
     script_require_loading(L, who);
     layer_list list = {.count = lua_rawlen(L, 1)};
@@ -105,8 +105,4 @@ static int l_layers(lua_State *L) {
     if (!made) script_raise(L);
     script_note_place(L, made, who);
     return 1;
-}
-
-void l_layers_open(lua_State *L) {
-    lua_register(L, who, l_layers);
 }

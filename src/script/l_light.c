@@ -1,6 +1,5 @@
 // Lights besides the sun: point_light { }, spot_light { }, sphere_light { }, and the list of them
 // that is assigned to fx.lights. Every number may change over time.
-#include "base/memory.h"
 #include "script/binding.h"
 #include <string.h>
 
@@ -25,15 +24,15 @@ static int make_light(lua_State *L, const char *who, scene_light_kind kind) {
     return 1;
 }
 
-static int l_point_light(lua_State *L) {
+int l_point_light(lua_State *L) {
     return make_light(L, "point_light", SCENE_POINT);
 }
 
-static int l_sphere_light(lua_State *L) {
+int l_sphere_light(lua_State *L) {
     return make_light(L, "sphere_light", SCENE_POINT);
 }
 
-static int l_spot_light(lua_State *L) {
+int l_spot_light(lua_State *L) {
     return make_light(L, "spot_light", SCENE_SPOT);
 }
 
@@ -61,12 +60,4 @@ size_t value_lights(lua_State *L, int index, const char *who, scene_light **out)
     }
     *out = lights;
     return count;
-}
-
-void l_light_open(lua_State *L) {
-    static const luaL_Reg none[] = {{NULL, NULL}};
-    object_type(L, "light", none);
-    lua_register(L, "point_light", l_point_light);
-    lua_register(L, "spot_light", l_spot_light);
-    lua_register(L, "sphere_light", l_sphere_light);
 }

@@ -1,15 +1,13 @@
 // The surface of a mesh: material { color = "#8a4a20", specular = 0.5, roughness = 0.4 }, for mesh
 // { "data/barrel.obj", material = rust }. Every number may change over time.
-#include "base/memory.h"
 #include "scene/material.h"
 #include "script/binding.h"
-#include <math.h>
 #include <string.h>
 
 static const char type_name[] = "material";
 enum { CONTROLS = 5 };
 
-static int l_material(lua_State *L) {
+int l_material(lua_State *L) {
     value_refuse_array(L, "material");
     material_object *object = object_new(L, type_name, sizeof *object);
     vm_charge_memory(L, sizeof(scene_material) + sizeof(field) + CONTROLS * EFFECT_CONTROL_COST);
@@ -40,10 +38,4 @@ void value_read_material(lua_State *L, const char *who, scene_mesh *mesh) {
         scene_mesh_set_material(mesh, object->material, script_memory(L));
     }
     lua_pop(L, 1);
-}
-
-void l_material_open(lua_State *L) {
-    static const luaL_Reg none[] = {{NULL, NULL}};
-    object_type(L, type_name, none);
-    lua_register(L, "material", l_material);
 }

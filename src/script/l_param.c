@@ -1,7 +1,6 @@
 // param { "density", 20, min = 0, max = 100, unit = "1/m", help = "..." }: its type follows from
 // the default: a number (integer = true: a whole one), true or false, "#rrggbb", {x, y, z} (color =
 // true: a colour); with words = { ... } one of these.
-#include "base/memory.h"
 #include "script/binding.h"
 #include <math.h>
 
@@ -66,7 +65,7 @@ static const char *get_text(lua_State *L, const char *key) {
     return text ? text : "";
 }
 
-static int l_param(lua_State *L) {
+int l_param(lua_State *L) {
     script_require_loading(L, who);
     value_check_object(L, 1, who);
     lua_settop(L, 1);
@@ -99,8 +98,4 @@ static int l_param(lua_State *L) {
     script_note_place(L, effect_get_param(script_of(L)->effect, (size_t)index), who);
     field_push_param(L, field_param(memory, desc->components, index), index);
     return 1;
-}
-
-void l_param_open(lua_State *L) {
-    lua_register(L, who, l_param);
 }

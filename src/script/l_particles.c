@@ -92,23 +92,16 @@ static void read_keys(lua_State *L, pass *p) {
     }
 }
 
-static int l_particles(lua_State *L) {
+int l_particles(lua_State *L) {
     script_require_loading(L, "particles");
     if (lua_gettop(L) != 1 || !value_is_plain_table(L, 1))
         vm_error(L, "particles takes named values, as in particles { count = 4096, rate = 2000 }");
     pass_particles_desc desc;
-    script *s = script_of(L);
-    const char *unsound = s->unsound;
     vm_charge_memory(L, lua_rawlen(L, 1) * BODY_COST);
     pass *p = pass_make(L, "particles", "particles", 1, script_object_find("particles")->keys);
     read_desc(L, &desc);
     read_keys(L, p);
-    if (!pass_particles_open(p, &desc) || !pass_declare(p)) script_raise(L);
-    s->unsound = unsound;
+    script_made(L, pass_particles_open(p, &desc) && pass_declare(p));
     pass_push(L, p);
     return 1;
-}
-
-void l_particles_open(lua_State *L) {
-    lua_register(L, "particles", l_particles);
 }

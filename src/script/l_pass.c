@@ -3,7 +3,6 @@
 //
 // The result stands for the pass's first output where an image is wanted; result.name is the output
 // of that name. history(image) is its content in the last frame.
-#include "base/memory.h"
 #include "pass/picture/picture.h"
 #include "script/binding.h"
 #include <string.h>
@@ -46,15 +45,15 @@ static bool picture_image(lua_State *L, int index, graph_image *out) {
     picture_object *object = object_test(L, index, "picture");
     if (!object) return false;
     if (!object->pass) {
-        const char *unsound = s->unsound;
+        const char *making = s->making;
         script_require_loading(L, "an image of a file");
         vm_charge_memory(L, PASS_COST);
-        s->unsound = "image";
+        s->making = "image";
         pass *made = effect_add_pass(s->effect, "picture", NULL, NULL);
         if (!made) script_raise(L);
         pass_picture_open(made, object->picture);
         if (!pass_declare(made)) script_raise(L);
-        s->unsound = unsound;
+        s->making = making;
         object->pass = made;
     }
     *out = pass_output(object->pass, "color");
@@ -340,7 +339,7 @@ static void begin_pass(lua_State *L, pass_call *call, const char *type, const ch
     script *s = script_of(L);
     const char *label = table ? value_get_string(L, table, call->who, "name") : NULL;
     vm_charge_memory(L, PASS_COST);
-    s->unsound = call->who;
+    script_make(L, call->who);
     call->pass = effect_add_pass(s->effect, type, file, label);
     if (!call->pass) script_raise(L);
     script_note_place(L, call->pass, file ? "shader" : call->who);
@@ -365,15 +364,12 @@ pass *pass_make(lua_State *L, const char *type, const char *who, int table, cons
 
 static int make_pass(lua_State *L, const char *type, const char *file, int first_positional,
                      lua_Integer first_element) {
-    script *s = script_of(L);
     int n = lua_gettop(L), table = settings_table(L);
     pass_call call = {.who = type ? type : file};
-    const char *unsound = s->unsound;
     begin_pass(L, &call, type, file, table);
     for (int i = first_positional; i <= n - (table != 0); i++) add_positional(L, &call, i);
     if (table) read_table(L, &call, table, first_element);
-    if (!pass_declare(call.pass)) script_raise(L);
-    s->unsound = unsound;
+    script_made(L, pass_declare(call.pass));
     pass_push(L, call.pass);
     return 1;
 }
@@ -404,9 +400,8 @@ static int l_shader(lua_State *L) {
 }
 
 void l_pass_open(lua_State *L) {
-    static const luaL_Reg none[] = {{NULL, NULL}};
     static const luaL_Reg result[] = {{"__index", l_result_index}, {NULL, NULL}};
-    object_type(L, "image", none);
+    object_type(L, "image", NULL);
     object_type(L, "pass result", result);
     size_t count;
     const pass_type *const *types = pass_types(&count);

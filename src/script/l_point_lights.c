@@ -19,23 +19,16 @@ static scene_instances *read_at(lua_State *L) {
     return at;
 }
 
-static int l_point_lights(lua_State *L) {
+int l_point_lights(lua_State *L) {
     script_require_loading(L, "point_lights");
     if (lua_gettop(L) != 1 || !value_is_plain_table(L, 1))
         vm_error(L, "point_lights takes named values, as in point_lights { count = 200, position = "
                     "vec(3 * sin(time + light_index), 0, 2) }");
-    script *s = script_of(L);
-    const char *unsound = s->unsound;
     pass *p =
         pass_make(L, "point_lights", "point_lights", 1, script_object_find("point_lights")->keys);
     scene_instances *at = read_at(L);
     uint32_t count = value_get_count(L, 1, "point_lights", "count", 0);
-    if (!pass_point_lights_open(p, count, at) || !pass_declare(p)) script_raise(L);
-    s->unsound = unsound;
+    script_made(L, pass_point_lights_open(p, count, at) && pass_declare(p));
     pass_push(L, p);
     return 1;
-}
-
-void l_point_lights_open(lua_State *L) {
-    lua_register(L, "point_lights", l_point_lights);
 }

@@ -1,5 +1,4 @@
 // scatter { count = 500, size = {120, 120}, distance = 2.2 }: a list of places for instances.
-#include "base/memory.h"
 #include "scene/instances.h"
 #include "scene/scatter.h"
 #include "script/binding.h"
@@ -86,7 +85,7 @@ static void push_places(lua_State *L, float (*places)[3], size_t count) {
     }
 }
 
-static int l_scatter(lua_State *L) {
+int l_scatter(lua_State *L) {
     scatter_desc desc = {0};
     size_t found;
     value_check_object(L, 1, who);
@@ -107,8 +106,4 @@ static int l_scatter(lua_State *L) {
         vm_error(L, "scatter: no place was found: is 'inside' above 0 anywhere within 'size'?");
     push_places(L, places, found);
     return 1;
-}
-
-void l_scatter_open(lua_State *L) {
-    lua_register(L, who, l_scatter);
 }

@@ -1,8 +1,6 @@
 // The scene around the volume: mesh { "file" }, orbit { } and camera { }, sun { }, sky { }. Every
 // number may change over time. Keys that are not given keep the scene's default.
 #include "base/file.h"
-#include "base/memory.h"
-#include "scene/material.h"
 #include "script/binding.h"
 #include <ctype.h>
 #include <stdio.h>
@@ -33,14 +31,14 @@ void value_refuse_array(lua_State *L, const char *who) {
                  script_object_key(script_object_find(who), 0)->name);
 }
 
-static int l_orbit(lua_State *L) {
+int l_orbit(lua_State *L) {
     value_refuse_array(L, "orbit");
     camera_object *object = object_new(L, "camera", sizeof *object);
     value_read_slots(L, "orbit", &object->camera);
     return 1;
 }
 
-static int l_camera(lua_State *L) {
+int l_camera(lua_State *L) {
     value_refuse_array(L, "camera");
     camera_object *object = object_new(L, "camera", sizeof *object);
     value_read_slots(L, "camera", &object->camera);
@@ -50,14 +48,14 @@ static int l_camera(lua_State *L) {
     return 1;
 }
 
-static int l_sun(lua_State *L) {
+int l_sun(lua_State *L) {
     value_refuse_array(L, "sun");
     sun_object *object = object_new(L, "sun", sizeof *object);
     value_read_slots(L, "sun", &object->sun);
     return 1;
 }
 
-static int l_sky(lua_State *L) {
+int l_sky(lua_State *L) {
     value_refuse_array(L, "sky");
     sky_object *object = object_new(L, "sky", sizeof *object);
     scene_sky *sky = &object->sky;
@@ -95,7 +93,7 @@ const scene_node *value_get_node(lua_State *L, int table, const char *who, const
 }
 
 // node { position = {0, 0, 2}, parent = ... }: a transform for meshes and instances.
-static int l_node(lua_State *L) {
+int l_node(lua_State *L) {
     value_refuse_array(L, "node");
     node_object *object = object_new(L, "node", sizeof *object);
     vm_charge_memory(L,
@@ -130,7 +128,7 @@ static const char *name_mesh(lua_State *L, const char *file, bool table) {
 }
 
 // mesh { "data/ground.obj", ... }, or mesh "data/ground.obj".
-static int l_mesh(lua_State *L) {
+int l_mesh(lua_State *L) {
     scene_mesh values = {0};
     bool table = lua_type(L, 1) != LUA_TSTRING;
     if (!table) {
@@ -163,16 +161,4 @@ static int l_mesh(lua_State *L) {
     mesh->called = name_mesh(L, file, table);
     script_note_place(L, mesh, "mesh");
     return 1;
-}
-
-void l_scene_open(lua_State *L) {
-    static const char *const types[] = {"camera", "sun", "sky", "mesh", "node"};
-    static const luaL_Reg none[] = {{NULL, NULL}};
-    for (size_t i = 0; i < COUNT_OF(types); i++) object_type(L, types[i], none);
-    lua_register(L, "orbit", l_orbit);
-    lua_register(L, "camera", l_camera);
-    lua_register(L, "sun", l_sun);
-    lua_register(L, "sky", l_sky);
-    lua_register(L, "mesh", l_mesh);
-    lua_register(L, "node", l_node);
 }

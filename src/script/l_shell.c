@@ -162,16 +162,13 @@ static int l_shell(lua_State *L) {
     script_require_loading(L, "shell");
     if (lua_gettop(L) != 1 || !value_is_plain_table(L, 1))
         vm_error(L, "shell takes named values, as in shell { radius = 2, color = {4, 2, 1} }");
-    script *s = script_of(L);
-    const char *unsound = s->unsound;
     const explosions_object *at = NULL;
     if (value_get(L, 1, "at") != LUA_TNIL && !(at = object_test(L, -1, who)))
         vm_error(L, "shell: 'at' takes explosions { }; got %s", object_kind(L, -1));
     lua_pop(L, 1);
     pass *p = pass_make(L, "shell", "shell", 1, script_object_find("shell")->keys);
     if (at) pass_shell_open(p, at->list);
-    if (!pass_declare(p)) script_raise(L);
-    s->unsound = unsound;
+    script_made(L, pass_declare(p));
     pass_push(L, p);
     return 1;
 }

@@ -1,7 +1,6 @@
 // A few planes of simulated flow around an axis: slices { count = 2, size = {128, 128}, height = 4
 // } has fields by name (flow.density). flow:inflow { }, flow:obstacle { } and flow:force { } act in
 // the planes; flow:slice(1) is one of them.
-#include "base/memory.h"
 #include "pass/slices/slices.h"
 #include "script/binding.h"
 #include <math.h>
@@ -62,8 +61,7 @@ static int l_slices(lua_State *L) {
     script_require_loading(L, "slices");
     if (lua_gettop(L) != 1 || !value_is_plain_table(L, 1))
         vm_error(L, "slices takes named values, as in slices { size = {128, 128}, height = 4 }");
-    script *s = script_of(L);
-    const char *unsound = s->unsound, *variable = value_name_or_variable(L, 1, "slices");
+    const char *variable = value_name_or_variable(L, 1, "slices");
     slices_object *object = object_new(L, "slices", sizeof *object);
     int result = lua_gettop(L);
     pass *p = pass_make(L, "slices", "slices", 1, script_object_find("slices")->keys);
@@ -75,11 +73,7 @@ static int l_slices(lua_State *L) {
     object->count = desc.count;
     object->time_step = desc.time_step;
     object->grid = pass_slices_open(p, &desc);
-    if (!object->grid) script_raise(L);
-    effect_add_grid(s->effect, object->grid);
-    effect_name_grid(s->effect, object->grid, variable);
-    if (!pass_declare(p)) script_raise(L);
-    s->unsound = unsound;
+    grid_made(L, object->grid, variable, p);
     lua_pushvalue(L, result);
     return 1;
 }
@@ -97,11 +91,8 @@ const slices_object *slices_self(lua_State *L, const char *method, const char *e
 
 static int add_part(lua_State *L, const char *type, const char *method, const char *example) {
     const slices_object *flow = slices_self(L, method, example);
-    script *s = script_of(L);
-    const char *unsound = s->unsound;
     pass *part = pass_make(L, type, method, 2, NULL);
-    if (!pass_declare(part) || !pass_slices_add(flow->pass, part, NULL)) script_raise(L);
-    s->unsound = unsound;
+    script_made(L, pass_declare(part) && pass_slices_add(flow->pass, part, NULL));
     return 0;
 }
 
@@ -133,12 +124,9 @@ static int l_obstacle(lua_State *L) {
     static const value_desc own[] = {{.name = "image"}, {.name = NULL}};
     const slices_object *flow =
         slices_self(L, "obstacle", "shape = disc { 0.5, 0.5, radius = 0.1 }");
-    script *s = script_of(L);
-    const char *unsound = s->unsound;
     pass *part = pass_make(L, "slices_obstacle", "obstacle", 2, own);
     const struct picture *painted = read_painted(L);
-    if (!pass_declare(part) || !pass_slices_add(flow->pass, part, painted)) script_raise(L);
-    s->unsound = unsound;
+    script_made(L, pass_declare(part) && pass_slices_add(flow->pass, part, painted));
     return 0;
 }
 

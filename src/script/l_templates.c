@@ -1,6 +1,5 @@
 // flow:templates { image "templates/source.exr", kind = "pressure", count = 40, ... }: pictures
 // that are put into the flow of slices, or into simulated air, for a while, again and again.
-#include "base/memory.h"
 #include "pass/slices/slices_templates.h"
 #include "script/binding.h"
 #include <string.h>
@@ -72,14 +71,10 @@ int l_slices_templates(lua_State *L) {
                                      {.name = "center"},
                                      {.name = NULL}};
     const slices_object *flow = slices_self(L, "templates", templates_example);
-    script *s = script_of(L);
-    const char *unsound = s->unsound;
     const picture *image;
     uint32_t count;
     pass *group = templates_make(L, "slices_templates", own, &image, &count);
     set_pair(L, group, "center", "center_x", "center_y", false);
-    if (!pass_declare(group) || !slices_add_templates(flow->pass, group, image, count))
-        script_raise(L);
-    s->unsound = unsound;
+    script_made(L, pass_declare(group) && slices_add_templates(flow->pass, group, image, count));
     return 0;
 }

@@ -36,8 +36,7 @@ static int l_voxels(lua_State *L) {
         vm_error(L, "voxels takes meshes, as in voxels { mesh { \"data/ball.obj\" } }");
     pass_voxels_desc desc = {.box = {{0, 0, 0}, {0, 0, 0}}};
     read_desc(L, &desc);
-    script *s = script_of(L);
-    const char *unsound = s->unsound, *variable = value_name_or_variable(L, 1, "voxels");
+    const char *variable = value_name_or_variable(L, 1, "voxels");
     field_context context = script_context(L);
     static const value_desc own[] = {
         {.name = "resolution"}, {.name = "size"}, {.name = "box"}, {.name = NULL}};
@@ -46,11 +45,7 @@ static int l_voxels(lua_State *L) {
     vm_charge_memory(L, lua_rawlen(L, 1) * BODY_COST);
     object->pass = pass_make(L, "voxels", "voxels", 1, own);
     object->grid = pass_voxels_open(object->pass, &desc, &context);
-    if (!object->grid) script_raise(L);
-    effect_add_grid(s->effect, object->grid);
-    effect_name_grid(s->effect, object->grid, variable);
-    if (!pass_declare(object->pass)) script_raise(L);
-    s->unsound = unsound;
+    grid_made(L, object->grid, variable, object->pass);
     lua_pushvalue(L, result);
     return 1;
 }

@@ -39,6 +39,17 @@ void script_raise(lua_State *L) {
     vm_error(L, "%s", err_get());
 }
 
+void script_make(lua_State *L, const char *who) {
+    script *s = script_of(L);
+    if (s->making) s->unsound = s->making; // an error came before it was made
+    s->making = who;
+}
+
+void script_made(lua_State *L, bool done) {
+    if (!done) script_raise(L);
+    script_of(L)->making = NULL;
+}
+
 // ---- time -------------------------------------------------------------------------------------
 
 static void script_renew(void *user) {
@@ -142,28 +153,32 @@ static void add_file(void *user, const char *path) {
 }
 
 static int open_bindings(lua_State *L) {
-    l_field_open(L);
-    l_effect_open(L);
-    l_events_open(L);
-    l_param_open(L);
-    l_curve_open(L);
-    l_palette_open(L);
-    l_layers_open(L);
-    l_grid_open(L);
-    l_scene_open(L);
-    l_light_open(L);
-    l_material_open(L);
-    l_instances_open(L);
-    l_scatter_open(L);
-    l_pass_open(L);
-    l_air_open(L);
-    l_slices_open(L);
-    l_particles_open(L);
-    l_shell_open(L);
-    l_point_lights_open(L);
-    l_voxels_open(L);
-    l_deposit_open(L);
-    l_image_open(L);
+    static script_opener *const openers[] = {
+        l_field_open, l_effect_open, l_palette_open, l_grid_open,   l_instances_open, l_pass_open,
+        l_air_open,   l_slices_open, l_shell_open,   l_voxels_open, l_deposit_open};
+    static const char *const types[] = {"camera", "sun",      "sky",    "mesh", "node",
+                                        "light",  "material", "picture"}; // without methods
+    static const luaL_Reg words[] = {{"curve", l_curve},
+                                     {"pick", l_pick},
+                                     {"layers", l_layers},
+                                     {"param", l_param},
+                                     {"particles", l_particles},
+                                     {"point_lights", l_point_lights},
+                                     {"scatter", l_scatter},
+                                     {"image", l_image},
+                                     {"material", l_material},
+                                     {"point_light", l_point_light},
+                                     {"spot_light", l_spot_light},
+                                     {"sphere_light", l_sphere_light},
+                                     {"orbit", l_orbit},
+                                     {"camera", l_camera},
+                                     {"sun", l_sun},
+                                     {"sky", l_sky},
+                                     {"mesh", l_mesh},
+                                     {"node", l_node}};
+    for (size_t i = 0; i < COUNT_OF(openers); i++) openers[i](L);
+    for (size_t i = 0; i < COUNT_OF(types); i++) object_type(L, types[i], NULL);
+    for (size_t i = 0; i < COUNT_OF(words); i++) lua_register(L, words[i].name, words[i].func);
     return 0;
 }
 
@@ -190,11 +205,12 @@ static bool script_run_file(script *s, const char *prelude_folder) {
                               s->limits.load);
 }
 
-static bool is_complete(const script *s) {
+static bool is_complete(script *s) {
     const char *file = effect_get_facts(s->effect)->file;
     if (!s->declared)
         return err_set("%s: no effect is declared; begin with local fx = effect { name = ... }",
                        file);
+    if (s->making) s->unsound = s->making;
     if (s->unsound)
         return err_set("%s: %s failed, and the file went on; an effect needs all its passes", file,
                        s->unsound);

@@ -14,8 +14,9 @@ typedef struct script_limits {
     uint64_t frame; // instructions of one function of time or `update`; 0: 20 million
 } script_limits;
 
-// Runs effect_file(e) and fills the effect. `prelude_folder` has the program's scripts, prelude.lua
-// and lib/. The effect owns the state of the script from then on (effect_set_hooks). False with
-// "file:line: message" and its callers on the lines below; the effect can then only be destroyed.
+// Runs effect_get_facts(e)->file and fills the effect. `prelude_folder` has the program's scripts,
+// prelude.lua and lib/. The effect owns the state of the script from then on (effect_set_hooks).
+// False with "file:line: message" and its callers on the lines below; the effect can then only be
+// destroyed.
 bool script_load(effect *e, const char *prelude_folder);
 bool script_load_limited(effect *e, const char *prelude_folder, const script_limits *limits);
