@@ -100,7 +100,8 @@ static bool may_keep(const live *l) {
            roil_hotkeys(l->effect, NULL, 0) == 0;
 }
 
-bool drawing_keeps(const live *l, double frame) {
+// Its picture can be shown at once.
+static bool drawing_keeps(const live *l, double frame) {
     const drawing *d = l->drawing;
     return may_keep(l) &&
            ((d->now && d->whole && d->now_frame == frame) || film_get(&d->film, frame) != NULL);

@@ -14,7 +14,6 @@ void drawing_end(live *l);             // waits a moment for the frame at work, 
 bool drawing_is_wanted(const live *l); // there is no picture of now, or it is an old one
 bool drawing_is_there(const live *l);  // the effect has a picture
 bool drawing_is_whole(const live *l);  // ... of now, for which nothing was late
-bool drawing_keeps(const live *l, double frame); // its picture can be shown at once
 // Finds the next frames, one after the other, whose pictures are kept. False: none from `from` on.
 bool drawing_find_kept(const live *l, double from, double *first, double *last);
 // Something other than time has changed, so that no picture is as it would be drawn now.

@@ -9,7 +9,8 @@
 
 enum { MOST_WORDS = 32, MOST_EDITORS = 64 };
 
-const char *editor_command(void) {
+// Returns the command of $ROIL_EDITOR, else of $VISUAL; "" when neither is set.
+static const char *editor_command(void) {
     const char *own = getenv("ROIL_EDITOR"), *visual = getenv("VISUAL");
     if (own && own[0]) return own;
     return visual ? visual : "";

@@ -2,8 +2,6 @@
 #pragma once
 #include "base/str.h"
 
-// Returns the command of $ROIL_EDITOR, else of $VISUAL; "" when neither is set.
-const char *editor_command(void);
 // Splits a command at its blanks and puts file and line in: where %f and %l are, or else as
 // "+LINE FILE", at the end. `out` holds at most `most` words and NULL; free each of them. False
 // with a message: there are more, or none.

@@ -2,7 +2,6 @@
 #include "base/memory.h"
 #include <pthread.h>
 #include <stdatomic.h>
-#include <stdio.h>
 #include <string.h>
 
 typedef struct alias {
@@ -63,18 +62,4 @@ void alias_hide(char *text, size_t capacity) {
         }
     }
     pthread_mutex_unlock(&lock);
-}
-
-bool alias_find(char *out, size_t capacity, const char *said) {
-    if (!count) return false;
-    pthread_mutex_lock(&lock);
-    const alias *a = all;
-    size_t length = 0;
-    for (; a; a = a->next) {
-        length = strlen(a->name);
-        if (strncmp(said, a->name, length) == 0 && said[length] == '/') break;
-    }
-    bool fits = a && snprintf(out, capacity, "%s%s", a->folder, said + length) < (int)capacity;
-    pthread_mutex_unlock(&lock);
-    return fits;
 }

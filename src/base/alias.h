@@ -1,7 +1,6 @@
 // Folders that hold what was unpacked from a file: people know them by that file's name. Messages
 // call them by it (err_set and log_write see to that). Any thread.
 #pragma once
-#include <stdbool.h>
 #include <stddef.h>
 
 void alias_add(const char *folder, const char *name); // both are copied
@@ -9,6 +8,3 @@ void alias_remove(const char *folder);
 // Replaces each of these folders in a text, where it is followed by '/' or the text ends, by its
 // name. What does not fit into `capacity` bytes is cut off.
 void alias_hide(char *text, size_t capacity);
-// Writes "smoke.roil/smoke.lua" as the path of that file; of several folders of one name the last
-// counts. False: it begins with no name, or is too long.
-bool alias_find(char *out, size_t capacity, const char *said);

@@ -61,8 +61,6 @@ typedef struct sheet_file { // one that is being written: values between 0 and 1
     bool srgb;  // encode red, green and blue for a display
     bool alpha; // has a meaningful fourth channel
 } sheet_file;
-// Writes what was asked for and adds it to `s->files`, whose entry it returns; NULL with a message.
-json_t *sheet_write(roil_sheet *s, const char *file, const char *format, const sheet_file *what);
 bool sheet_write_all(roil_sheet *s, const char *file, const roil_sheet_options *options,
                      const sheet_engine *engine);
 // Adds the last frame, times a weight, to a cell of `maps`.

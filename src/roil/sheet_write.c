@@ -87,7 +87,9 @@ static bool write_planes(const char *path, const sheet_file *f, const char *made
     return done;
 }
 
-json_t *sheet_write(roil_sheet *s, const char *file, const char *format, const sheet_file *what) {
+// Writes what was asked for and adds it to `s->files`, whose entry it returns; NULL with a message.
+static json_t *sheet_write(roil_sheet *s, const char *file, const char *format,
+                           const sheet_file *what) {
     strbuf path = {0};
     const char *extension = strcmp(format, "png16") == 0 ? "png" : format;
     sheet_stem(file, &path);
