@@ -29,6 +29,7 @@ typedef struct image {
 } image;
 
 static VkInstance instance;
+static VkDebugUtilsMessengerEXT messenger; // while the instance lives; null without validation
 static VkPhysicalDevice physical;
 static VkDevice device;
 static VkQueue queue;
@@ -86,6 +87,11 @@ static void open_instance(void) {
         info.enabledLayerCount = info.enabledExtensionCount = 0;
     }
     VK(vkCreateInstance(&info, NULL, &instance));
+    PFN_vkCreateDebugUtilsMessengerEXT listen =
+        (PFN_vkCreateDebugUtilsMessengerEXT)vkGetInstanceProcAddr(instance,
+                                                                  "vkCreateDebugUtilsMessengerEXT");
+    told.pNext = NULL;
+    if (info.enabledLayerCount) VK(listen(instance, &told, NULL, &messenger));
     uint32_t count = 1;
     VkResult result = vkEnumeratePhysicalDevices(instance, &count, &physical);
     if ((result != VK_SUCCESS && result != VK_INCOMPLETE) || !count) FAIL("there is no device");
@@ -318,6 +324,10 @@ static void close_engine(void) {
     vkDestroySemaphore(device, timeline, NULL);
     vkDestroyCommandPool(device, pool, NULL);
     vkDestroyDevice(device, NULL);
+    PFN_vkDestroyDebugUtilsMessengerEXT silence =
+        (PFN_vkDestroyDebugUtilsMessengerEXT)vkGetInstanceProcAddr(
+            instance, "vkDestroyDebugUtilsMessengerEXT");
+    if (messenger) silence(instance, messenger, NULL);
     vkDestroyInstance(instance, NULL);
 }
 
@@ -397,6 +407,22 @@ static void draw_triangles(VkCommandBuffer commands, const float clip[16]) {
     vkCmdEndRendering(commands);
 }
 
+// Into the buffer, for the host to read.
+static void copy_to_host(VkCommandBuffer commands, VkImage what, VkImageLayout layout) {
+    VkBufferImageCopy region = {.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
+                                .imageExtent = {WIDTH, HEIGHT, 1}};
+    vkCmdCopyImageToBuffer(commands, what, layout, host_buffer, 1, &region);
+    VkMemoryBarrier2 read = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
+                             .srcStageMask = VK_PIPELINE_STAGE_2_COPY_BIT,
+                             .srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                             .dstStageMask = VK_PIPELINE_STAGE_2_HOST_BIT,
+                             .dstAccessMask = VK_ACCESS_2_HOST_READ_BIT};
+    VkDependencyInfo info = {.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
+                             .memoryBarrierCount = 1,
+                             .pMemoryBarriers = &read};
+    vkCmdPipelineBarrier2(commands, &info);
+}
+
 static void compose_layers(uint64_t before, uint64_t after) {
     VkCommandBuffer commands = begin_commands(compose_commands);
     relayout(commands, picture.image, VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_GENERAL,
@@ -407,19 +433,7 @@ static void compose_layers(uint64_t before, uint64_t after) {
     vkCmdDispatch(commands, (WIDTH + 7) / 8, (HEIGHT + 7) / 8, 1);
     relayout(commands, picture.image, VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_GENERAL,
              VK_IMAGE_ASPECT_COLOR_BIT);
-    VkBufferImageCopy region = {.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
-                                .imageExtent = {WIDTH, HEIGHT, 1}};
-    vkCmdCopyImageToBuffer(commands, picture.image, VK_IMAGE_LAYOUT_GENERAL, host_buffer, 1,
-                           &region);
-    VkMemoryBarrier2 read = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
-                             .srcStageMask = VK_PIPELINE_STAGE_2_COPY_BIT,
-                             .srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                             .dstStageMask = VK_PIPELINE_STAGE_2_HOST_BIT,
-                             .dstAccessMask = VK_ACCESS_2_HOST_READ_BIT};
-    VkDependencyInfo info = {.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
-                             .memoryBarrierCount = 1,
-                             .pMemoryBarriers = &read};
-    vkCmdPipelineBarrier2(commands, &info);
+    copy_to_host(commands, picture.image, VK_IMAGE_LAYOUT_GENERAL);
     submit(commands, before, after);
 }
 
