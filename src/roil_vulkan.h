@@ -70,8 +70,8 @@ typedef struct roil_vulkan_image { // of the host: two-dimensional, of one level
     // The layouts in which roil finds the image and in which it leaves it. Its content need not be
     // kept where an image is written: `before` may be VK_IMAGE_LAYOUT_UNDEFINED there.
     VkImageLayout before, after;
-    // It goes to another process or API (VK_QUEUE_FAMILY_EXTERNAL) with each frame; only for images
-    // that are written.
+    // It goes to another process or API (VK_QUEUE_FAMILY_EXTERNAL) with each frame, between the
+    // layouts VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL and `after`; only for images that are written.
     bool external;
 } roil_vulkan_image;
 
@@ -110,7 +110,8 @@ bool roil_vulkan_advance(roil_effect *e, double frame, const roil_vulkan_frame *
 typedef struct roil_vulkan_shared {
     // Of roil_vulkan_share_image: as roil_vulkan_frame.images takes it.
     roil_vulkan_image image;
-    roil_vulkan_semaphore semaphore; // of roil_vulkan_share_semaphore: for `signals`; a timeline
+    // Of roil_vulkan_share_semaphore, a timeline: for `signals` and `waits`.
+    roil_vulkan_semaphore semaphore;
     // To be imported as VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT, or as such a semaphore, by a
     // device and a driver of these UUIDs. Whoever imports or closes it owns it.
     int fd;
@@ -121,9 +122,15 @@ typedef struct roil_vulkan_shared {
 } roil_vulkan_shared;
 // Make an image that a layer can be drawn into, and a semaphore, on the device of roil, its own or
 // the host's, that another process or API can open. The image is made with tiling OPTIMAL, one
-// level, and the usages TRANSFER_DST, TRANSFER_SRC and SAMPLED, which whoever imports it says, too.
-// False with a message, as where the device lacks VK_KHR_external_memory_fd or
-// VK_KHR_external_semaphore_fd, or cannot export such a thing.
+// level, and the usages TRANSFER_DST, TRANSFER_SRC and SAMPLED, which whoever imports it says, too,
+// with a dedicated allocation. A semaphore is imported for good, into a timeline. False with a
+// message, as where the device lacks VK_KHR_external_memory_fd or VK_KHR_external_semaphore_fd, or
+// cannot export such a thing.
+//
+// Whoever imports the image waits for what the frame signals, and acquires the image in each frame,
+// by a barrier from VK_QUEUE_FAMILY_EXTERNAL to its own family and from TRANSFER_DST_OPTIMAL to
+// image.after (GENERAL). It need not give it back, but the next frame must wait until it was read:
+// the other side may signal the shared timeline, too, for `waits`.
 bool roil_vulkan_share_image(roil *r, VkFormat format, uint32_t width, uint32_t height,
                              roil_vulkan_shared *out);
 bool roil_vulkan_share_semaphore(roil *r, roil_vulkan_shared *out);

@@ -42,7 +42,8 @@ static VkImageUsageFlags usage(void) {
            VK_IMAGE_USAGE_SAMPLED_BIT;
 }
 
-static bool can_export(gpu *g, int format) {
+// Of which size, too: fewer texels may be allowed than of other images.
+static bool can_export(gpu *g, int format, uint32_t width, uint32_t height) {
     VkPhysicalDeviceExternalImageFormatInfo by = {
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_EXTERNAL_IMAGE_FORMAT_INFO, .handleType = BY_FD};
     VkPhysicalDeviceImageFormatInfo2 info = {
@@ -59,9 +60,14 @@ static bool can_export(gpu *g, int format) {
         return err_set("the device '%s' cannot share images: it is made without %s", g->info.name,
                        VK_KHR_EXTERNAL_MEMORY_FD_EXTENSION_NAME);
     VkResult result = g->vk.GetPhysicalDeviceImageFormatProperties2(g->physical, &info, &p);
-    return (result == VK_SUCCESS && (can.externalMemoryProperties.externalMemoryFeatures &
-                                     VK_EXTERNAL_MEMORY_FEATURE_EXPORTABLE_BIT)) ||
-           err_set("the device '%s' cannot share images of Vulkan format %d", g->info.name, format);
+    if (result != VK_SUCCESS || !(can.externalMemoryProperties.externalMemoryFeatures &
+                                  VK_EXTERNAL_MEMORY_FEATURE_EXPORTABLE_BIT))
+        return err_set("the device '%s' cannot share images of Vulkan format %d", g->info.name,
+                       format);
+    const VkExtent3D most = p.imageFormatProperties.maxExtent;
+    return (width > 0 && height > 0 && width <= most.width && height <= most.height) ||
+           err_set("a shared image of %u x %u; the device allows 1 x 1 to %u x %u", width, height,
+                   most.width, most.height);
 }
 
 static bool create_image(gpu *g, shared *s, int format, uint32_t width, uint32_t height) {
@@ -76,10 +82,6 @@ static bool create_image(gpu *g, shared *s, int format, uint32_t width, uint32_t
                               .arrayLayers = 1,
                               .samples = VK_SAMPLE_COUNT_1_BIT,
                               .usage = usage()};
-    uint32_t most = g->limits.maxImageDimension2D;
-    if (width < 1 || height < 1 || width > most || height > most)
-        return err_set("a shared image of %u x %u; the device allows 1 to %u each", width, height,
-                       most);
     return vk_check(g, g->vk.CreateImage(g->device, &info, NULL, &s->image),
                     "creating a shared image");
 }
@@ -126,7 +128,7 @@ static bool finish(gpu *g, shared *s, bool done, gpu_shared *out) {
 
 bool gpu_share_image(gpu *g, int format, uint32_t width, uint32_t height, gpu_shared *out) {
     *out = (gpu_shared){.fd = -1};
-    if (!vk_alive(g) || !can_export(g, format)) return false;
+    if (!vk_alive(g) || !can_export(g, format, width, height)) return false;
     shared *s = mem_alloc(sizeof *s);
     bool done = create_image(g, s, format, width, height) && allocate(g, s, out);
     VkMemoryGetFdInfoKHR by = {.sType = VK_STRUCTURE_TYPE_MEMORY_GET_FD_INFO_KHR,

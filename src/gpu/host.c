@@ -302,6 +302,11 @@ bool gpu_image_hand_out(gpu *g, gpu_image *from, const gpu_host_image *to) {
         else
             blit(g, from, to, scaled);
     }
+    if (to->external && layout != VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL) {
+        // Whoever acquires it has to name the layouts that it is released between: always these.
+        record(g, to, layout, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, false, false);
+        layout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
+    }
     record(g, to, layout, (VkImageLayout)to->after, from && can, to->external);
     return can;
 }

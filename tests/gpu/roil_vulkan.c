@@ -39,7 +39,7 @@ static roil_vulkan host(void) {
                          .features = &needs.features,
                          .extensions = needs.extensions,
                          .extension_count = needs.extension_count,
-                         .labels = true,
+                         .labels = !getenv("ENGINE_BARE"),
                          .lock = lock,
                          .unlock = unlock};
 }
@@ -117,9 +117,7 @@ static float middle(VkImage what, VkImageLayout layout) {
     uint16_t *halves;
     VkCommandBuffer commands = begin_commands(compose_commands);
     relayout(commands, what, layout, layout, VK_IMAGE_ASPECT_COLOR_BIT);
-    VkBufferImageCopy region = {.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
-                                .imageExtent = {WIDTH, HEIGHT, 1}};
-    vkCmdCopyImageToBuffer(commands, what, layout, host_buffer, 1, &region);
+    copy_to_host(commands, what, layout);
     submit(commands, now, now + 1);
     wait_for(++now);
     VK(vkMapMemory(device, host_memory, 0, VK_WHOLE_SIZE, 0, (void **)&halves));
@@ -255,7 +253,7 @@ static void what_fails_is_given_back(void **state) {
     roil_destroy(r);
 }
 
-// ---- other processes --------------------------------------------------------------------------
+// ---- other processes: this test's device stands for that of one, and roil has its own ----------
 
 static VkImage import_image(const roil_vulkan_shared *from, VkDeviceMemory *memory) {
     VkImage out;
@@ -289,45 +287,146 @@ static VkImage import_image(const roil_vulkan_shared *from, VkDeviceMemory *memo
     return out;
 }
 
-// The test's device stands for another process: roil has a device of its own here.
-static void an_image_is_opened_by_another_device(void **state) {
+static VkSemaphore import_semaphore(const roil_vulkan_shared *from) {
+    VkSemaphore out;
+    VkSemaphoreTypeCreateInfo type = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO,
+                                      .semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE};
+    VkSemaphoreCreateInfo info = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO, .pNext = &type};
+    VK(vkCreateSemaphore(device, &info, NULL, &out));
+    VkImportSemaphoreFdInfoKHR fd = {.sType = VK_STRUCTURE_TYPE_IMPORT_SEMAPHORE_FD_INFO_KHR,
+                                     .semaphore = out,
+                                     .handleType = VK_EXTERNAL_SEMAPHORE_HANDLE_TYPE_OPAQUE_FD_BIT,
+                                     .fd = from->fd};
+    PFN_vkImportSemaphoreFdKHR import =
+        (PFN_vkImportSemaphoreFdKHR)vkGetDeviceProcAddr(device, "vkImportSemaphoreFdKHR");
+    assert_non_null(import);
+    VK(import(device, &fd));
+    return out;
+}
+
+// Acquires the image and copies it to the host's memory: once `shared` has come to `from`, and then
+// it comes to `from + 1`; VK_NULL_HANDLE: at once.
+static void begin_reading(VkImage what, VkSemaphore shared, uint64_t from) {
+    VkCommandBuffer commands = begin_commands(compose_commands);
+    VkImageMemoryBarrier2 acquire = {.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
+                                     .srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                                     .dstStageMask = VK_PIPELINE_STAGE_2_COPY_BIT,
+                                     .dstAccessMask = VK_ACCESS_2_TRANSFER_READ_BIT,
+                                     .oldLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                                     .newLayout = VK_IMAGE_LAYOUT_GENERAL,
+                                     .srcQueueFamilyIndex = VK_QUEUE_FAMILY_EXTERNAL,
+                                     .dstQueueFamilyIndex = 0,
+                                     .image = what,
+                                     .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
+    VkDependencyInfo info = {.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
+                             .imageMemoryBarrierCount = 1,
+                             .pImageMemoryBarriers = &acquire};
+    vkCmdPipelineBarrier2(commands, &info);
+    copy_to_host(commands, what, VK_IMAGE_LAYOUT_GENERAL);
+    VK(vkEndCommandBuffer(commands));
+    VkCommandBufferSubmitInfo one = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO,
+                                     .commandBuffer = commands};
+    VkSemaphoreSubmitInfo wait = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO,
+                                  .semaphore = shared,
+                                  .value = from,
+                                  .stageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT};
+    VkSemaphoreSubmitInfo signals[] = {wait, wait};
+    signals[0].semaphore = timeline;
+    signals[0].value = ++now;
+    signals[1].value = from + 1;
+    VkSubmitInfo2 all = {.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2,
+                         .waitSemaphoreInfoCount = shared ? 1 : 0,
+                         .pWaitSemaphoreInfos = &wait,
+                         .commandBufferInfoCount = 1,
+                         .pCommandBufferInfos = &one,
+                         .signalSemaphoreInfoCount = shared ? 2 : 1,
+                         .pSignalSemaphoreInfos = signals};
+    VK(vkQueueSubmit2(queue, 1, &all, NULL));
+}
+
+// What begin_reading has read is this frame, in every pixel.
+static void expect_frame(const float *frame) {
+    uint16_t *halves;
+    assert_true(frame[4 * (HEIGHT / 2 * WIDTH + WIDTH / 2)] > 0.3f);
+    wait_for(now);
+    VK(vkMapMemory(device, host_memory, 0, VK_WHOLE_SIZE, 0, (void **)&halves));
+    for (int i = 0; i < 4 * WIDTH * HEIGHT; i++)
+        if (from_half(halves[i]) != frame[i])
+            fail_msg("channel %d of pixel %d, %d: %g of the other device is %g here", i % 4,
+                     i / 4 % WIDTH, i / 4 / WIDTH, (double)from_half(halves[i]), (double)frame[i]);
+    vkUnmapMemory(device, host_memory);
+}
+
+// Two frames, of which each is drawn once the one before was read, and read once it was drawn: by
+// the semaphore, for which the other device waits before anything will signal it, else by the host.
+static void read_frames(roil_effect *e, const roil_vulkan_shared *into, VkImage opened,
+                        const roil_vulkan_shared *semaphore, VkSemaphore shared) {
+    float *frame = mem_alloc(sizeof *frame * 4 * WIDTH * HEIGHT);
+    for (uint64_t i = 0; i < 2; i++) {
+        const roil_vulkan_semaphore wait = {semaphore->semaphore.semaphore, 2 * i},
+                                    signal = {semaphore->semaphore.semaphore, 2 * i + 1};
+        const uint32_t count = shared ? 1 : 0;
+        const roil_vulkan_frame f = {.images[ROIL_LAYER_COLOR] = into->image,
+                                     .waits = &wait,
+                                     .wait_count = count,
+                                     .signals = &signal,
+                                     .signal_count = count};
+        seen.view[12] = 0.3f * (float)i;
+        ok(roil_set_view(e, &seen));
+        if (shared) begin_reading(opened, shared, 2 * i + 1);
+        ok(roil_vulkan_render(e, (double)i, &f));
+        roil_readback *done = roil_read_begin(e, NULL);
+        ok(done && roil_read_end(done, frame));
+        if (!shared) begin_reading(opened, VK_NULL_HANDLE, 0);
+        expect_frame(frame);
+    }
+    mem_free(frame);
+}
+
+static bool is_this_device(const roil_vulkan_shared *s) {
+    VkPhysicalDeviceVulkan11Properties v11 = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES};
+    VkPhysicalDeviceProperties2 two = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2,
+                                       .pNext = &v11};
+    vkGetPhysicalDeviceProperties2(physical, &two);
+    return memcmp(v11.deviceUUID, s->device_uuid, VK_UUID_SIZE) == 0 &&
+           memcmp(v11.driverUUID, s->driver_uuid, VK_UUID_SIZE) == 0;
+}
+
+static void images_are_read_by_another_device(void **state) {
     (void)state;
-    roil *r = roil_create(&(roil_desc){.home = getenv("ROIL_SOURCE_DIR"), .validate = true});
+    VkPhysicalDeviceProperties named;
+    vkGetPhysicalDeviceProperties(physical, &named);
+    roil *r = roil_create(&(roil_desc){
+        .device = named.deviceName, .home = getenv("ROIL_SOURCE_DIR"), .validate = true});
     ok(r);
     roil_effect *e = open_ball(r);
-    roil_vulkan_shared shared, semaphore;
-    VkDeviceMemory memory;
-    if (!roil_vulkan_share_image(r, hdr, WIDTH, HEIGHT, &shared)) {
-        expect_error(false, "cannot share images");
-        print_message("skipped: %s\n", roil_error());
-    } else {
-        VkImage opened = import_image(&shared, &memory);
-        relayout(begin_commands(scene_commands), opened, VK_IMAGE_LAYOUT_UNDEFINED,
-                 VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_ASPECT_COLOR_BIT);
-        submit(scene_commands, 0, ++now);
-        wait_for(now);
-        roil_vulkan_frame f = {.images[ROIL_LAYER_COLOR] = shared.image};
-        ok(roil_vulkan_render(e, 0, &f));
-        roil_readback *done = roil_read_begin(e, NULL); // waits where there is no semaphore
-        ok(done);
-        float *all = mem_alloc(sizeof *all * 4 * WIDTH * HEIGHT);
-        ok(roil_read_end(done, all));
-        const float red = all[4 * (HEIGHT / 2 * WIDTH + WIDTH / 2)];
-        assert_true(red > 0.3f && middle(opened, VK_IMAGE_LAYOUT_GENERAL) == red);
-        mem_free(all);
-        vkDestroyImage(device, opened, NULL);
-        vkFreeMemory(device, memory, NULL);
-        roil_vulkan_unshare(r, &shared);
-    }
-    expect_error(roil_vulkan_share_image(r, hdr, 0, 1, &shared), "a shared image of 0 x 1");
+    roil_vulkan_shared into, semaphore;
+    VkSemaphore shared = VK_NULL_HANDLE;
     if (roil_vulkan_share_semaphore(r, &semaphore)) {
-        assert_true(semaphore.fd >= 0);
-        close(semaphore.fd);
-        roil_vulkan_unshare(r, &semaphore);
+        assert_true(is_this_device(&semaphore));
+        shared = import_semaphore(&semaphore);
     } else { // as Mesa's lavapipe
         expect_error(false, "cannot share");
-        print_message("skipped: %s\n", roil_error());
+        print_message("skipped: semaphores: %s\n", roil_error());
     }
+    if (roil_vulkan_share_image(r, hdr, WIDTH, HEIGHT, &into)) {
+        assert_true(is_this_device(&into));
+        VkDeviceMemory memory;
+        VkImage opened = import_image(&into, &memory);
+        read_frames(e, &into, opened, &semaphore, shared);
+        vkDestroyImage(device, opened, NULL);
+        vkFreeMemory(device, memory, NULL);
+        roil_vulkan_unshare(r, &into);
+    } else {
+        expect_error(false, "cannot share images");
+        print_message("skipped: images: %s\n", roil_error());
+    }
+    if (shared) {
+        vkDestroySemaphore(device, shared, NULL);
+        roil_vulkan_unshare(r, &semaphore);
+    }
+    expect_error(roil_vulkan_share_image(r, hdr, 0, 1, &into), "a shared image of 0 x 1");
     roil_unload(e);
     assert_int_equal(roil_validation_messages(r), 0);
     roil_destroy(r);
@@ -432,7 +531,7 @@ int main(void) {
         cmocka_unit_test(walls_hide_what_is_behind_them),
         cmocka_unit_test(depths_of_every_format_are_read),
         cmocka_unit_test(what_fails_is_given_back),
-        cmocka_unit_test(an_image_is_opened_by_another_device),
+        cmocka_unit_test(images_are_read_by_another_device),
         cmocka_unit_test(a_limit_on_memory_is_kept),
         cmocka_unit_test(a_sequence_keeps_to_the_limit),
     };
