@@ -84,7 +84,8 @@ typedef struct roil_readback roil_readback;
 // scene-linear picture, or else the one that is shown. Returns at once. Call it after roil_render,
 // and roil_unload after roil_read_end. NULL with a message.
 roil_readback *roil_read_begin(roil_effect *e, const char *image);
-// It has arrived; never waits. Of a device that is lost it never does (roil_is_lost).
+// It has arrived, or never will since the device is lost, as one is that has finished nothing for
+// roil_desc.timeout: then roil_read_end fails. Never waits.
 bool roil_read_ready(roil_readback *b);
 void roil_read_size(const roil_readback *b, uint32_t *width, uint32_t *height);
 // Writes four floats for each pixel, rows from the top, and frees `b`; `out` NULL only frees it.

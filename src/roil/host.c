@@ -142,7 +142,7 @@ roil_readback *roil_read_begin(roil_effect *e, const char *image) {
 }
 
 bool roil_read_ready(roil_readback *b) {
-    return gpu_frame_done(b->device, b->frame);
+    return gpu_frame_done(b->device, b->frame) || gpu_pending(b->device) == 0;
 }
 
 void roil_read_size(const roil_readback *b, uint32_t *width, uint32_t *height) {
