@@ -15,8 +15,11 @@ extern "C" {
 #endif
 
 typedef struct roil_layer_desc {
-    const char *source; // name of a pass march, whose medium it is; NULL: the first
-    bool motion;        // ROIL_LAYER_MOTION is wanted
+    // Name of a pass march, whose medium it is. NULL: all media that the effect's picture shows, at
+    // most three: those of marches that passes `over` lay over it. Where these are none, as where
+    // marches are only counted and coloured by `bands`, it is the first march.
+    const char *source;
+    bool motion; // ROIL_LAYER_MOTION is wanted
 } roil_layer_desc;
 
 typedef enum roil_layer_image {
@@ -28,16 +31,18 @@ typedef enum roil_layer_image {
     // Where that place is in the picture, less where it was in the frame before: parts of the
     // picture's width to the right and of its height down, without jitter; rg16f. It has the
     // camera's motion, and the medium's own where a grid of its density has a velocity or `advect`
-    // carries it.
+    // carries it; of several media the mean by what is seen of each.
     ROIL_LAYER_MOTION,
     ROIL_LAYER_IMAGES
 } roil_layer_image;
 
-// Makes the effect draw the medium of a march alone, before no mesh, sky or sprite of its own and
-// without bloom or tone mapping, into the images of a layer. A warning in the log names what else
-// it would draw: other marches and stacks, sprites, shells, glows, meshes and their pieces. Call it
-// after roil_load and before roil_prepare, once. False with a message: it has no such pass, or its
-// frames are averages (roil_set_samples).
+// Makes the effect draw its media alone, before no mesh, sky or sprite of its own and without bloom
+// or tone mapping, into the images of a layer. Of several media the nearer one lies before the
+// other in each pixel, whichever way the script lays them; where they go through each other the
+// order is a mean. All have the finest of their resolutions. A warning in the log names what else
+// the effect would draw: other marches and stacks, sprites, shells, glows, meshes and their pieces.
+// Call it after roil_load and before roil_prepare, once. False with a message: it has no such pass,
+// or its frames are averages (roil_set_samples).
 bool roil_make_layer(roil_effect *e, const roil_layer_desc *desc);
 // Returns the name of an image of the layer, as roil_keep and roil_read_begin take it; NULL with a
 // message: there is none.

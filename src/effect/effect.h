@@ -191,7 +191,7 @@ bool effect_add_sheet(effect *e, const effect_sheet_desc *desc, effect_sheet *ou
 // what it is made of (field_repeats).
 bool effect_repeats(effect *e, const char *source, double seconds, strbuf *why);
 
-// ---- layers: the medium of a march as a part of a host's picture -------------------------------
+// ---- layers: the media of marches as a part of a host's picture --------------------------------
 
 enum {                          // images of a layer
     EFFECT_LAYER_COLOR,         // premultiplied radiance, and opacity
@@ -202,10 +202,11 @@ enum {                          // images of a layer
 };
 typedef struct effect_layer {
     graph_image images[EFFECT_LAYER_IMAGES]; // the caller must keep those that it wants
-    bool moves; // the medium has a motion of its own, which the image has besides the camera's
+    bool moves; // a medium has a motion of its own, which the image has besides the camera's
 } effect_layer;
-// Adds passes that see the medium of a march (`source` NULL: the first) alone, in front of the
-// depths of effect_give_depth. Call it as effect_add_volume. `motion`: the image is wanted.
+// Adds passes that see media alone, in front of the depths of effect_give_depth: that of the march
+// `source`; NULL: of all marches that the effect's picture shows as they are, at most three, or
+// else of its first. Call it as effect_add_volume. `motion`: the image is wanted.
 bool effect_add_layer(effect *e, const char *source, bool motion, effect_layer *out);
 // From the next frame on: the camera (NULL: the script's own). False with a message.
 bool effect_set_view(effect *e, const scene_view *view);

@@ -124,7 +124,9 @@ bool events_control_set(effect *e, control *c, const char *text);
 void events_control_reset(effect *e, control *c);
 void events_control_print(const effect *e, const control *c, strbuf *out);
 
-// sheet.c, for layer.c too. Of the march that is called so, or the first; NULL with a message.
+// sheet.c, for layer.c too.
+bool effect_is_medium(const pass *p); // it marches through one
+// The march that is called so, or the first; NULL with a message.
 pass *effect_find_march(effect *e, const char *label);
 const field *effect_find_velocity(effect *e, const pass *march); // of its medium; NULL: not known
 // Gives a pass the images of light that a march has. False with a message.

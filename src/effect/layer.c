@@ -74,19 +74,67 @@ bool effect_fill_lights(effect *e, struct light_block *out) {
 
 // ---- passes -----------------------------------------------------------------------------------
 
-// What a host would miss besides the medium: surfaces, sprites, and other media.
-static void tell_what_is_left_out(const effect *e, const pass *march) {
+enum { MOST_MEDIA = 3 }; // that `media` composes
+
+typedef struct medium {
+    pass *march; // the effect's own
+    pass *seen;  // the march before the host's walls
+    const field *velocity;
+} medium;
+
+static bool has(const medium *all, size_t count, const pass *march) {
+    for (size_t i = 0; i < count; i++)
+        if (all[i].march == march) return true;
+    return false;
+}
+
+static void mark_writer(const effect *e, graph_image image, bool *shown) {
+    const pass *p = image.id ? pass_writer(&e->host, image) : NULL;
+    for (size_t i = 0; p && i < e->pass_count; i++) shown[i] = shown[i] || e->passes[i] == p;
+}
+
+// Marches that the effect's picture shows as they are, the last one first. What is not laid over a
+// picture may only count or colour what another one shows.
+static size_t find_shown(effect *e, medium *all) {
+    static const char *const inputs[] = {"volume", "source"}, *const types[] = {
+                                                                  "over", "accumulate", "final"};
+    size_t count = 0;
+    bool *shown = mem_alloc(e->pass_count + 1); // each reads what those before it write
+    mark_writer(e, e->pictures[EFFECT_OUTPUT], shown);
+    for (size_t i = e->pass_count; i-- > 0;) {
+        pass *p = e->passes[i];
+        if (shown[i] && effect_is_medium(p) && count < MOST_MEDIA) all[count++].march = p;
+        for (size_t k = 0; k < COUNT_OF(types) * COUNT_OF(inputs) && shown[i]; k++)
+            if (pass_is(p, types[k / COUNT_OF(inputs)]))
+                mark_writer(e, pass_input(p, inputs[k % COUNT_OF(inputs)]), shown);
+    }
+    mem_free(shown);
+    return count;
+}
+
+static size_t find_media(effect *e, const char *source, medium *all) {
+    const size_t count = source ? 0 : find_shown(e, all);
+    if (count > 0) return count;
+    all[0].march = effect_find_march(e, source);
+    return all[0].march ? 1 : 0;
+}
+
+// What a host would miss besides the media: surfaces, sprites, and other media.
+static void tell_what_is_left_out(const effect *e, const medium *all, size_t count) {
     static const char *const types[] = {"march",  "stack",    "splats",  "shell",
                                         "pieces", "geometry", "forward", "point_light_glows"};
-    strbuf all = {0};
+    strbuf left = {0}, shown = {0};
     for (size_t i = 0; i < e->pass_count; i++)
-        for (size_t k = 0; k < COUNT_OF(types) && e->passes[i] != march; k++)
+        for (size_t k = 0; k < COUNT_OF(types) && !has(all, count, e->passes[i]); k++)
             if (pass_is(e->passes[i], types[k]))
-                strbuf_add(&all, "%s'%s'", all.length ? ", " : "", pass_label(e->passes[i]));
-    if (all.length)
-        log_write(LOG_WARNING, "%s: a layer shows the medium of '%s' alone; it leaves out %s",
-                  e->facts.file, pass_label(march), strbuf_text(&all));
-    strbuf_free(&all);
+                strbuf_add(&left, "%s'%s'", left.length ? ", " : "", pass_label(e->passes[i]));
+    for (size_t i = 0; i < count; i++)
+        strbuf_add(&shown, "%s'%s'", i ? ", " : "", pass_label(all[i].march));
+    if (left.length)
+        log_write(LOG_WARNING, "%s: a layer shows the medium of %s alone; it leaves out %s",
+                  e->facts.file, strbuf_text(&shown), strbuf_text(&left));
+    strbuf_free(&left);
+    strbuf_free(&shown);
 }
 
 static pass *add_depth(effect *e) {
@@ -94,11 +142,42 @@ static pass *add_depth(effect *e) {
     return p && pass_declare(p) ? p : NULL;
 }
 
-static bool add_reach(effect *e, pass *medium, bool moves, effect_layer *out) {
+// Motion is found sample by sample where the medium has one of its own, by `maps`.
+static bool add_medium(effect *e, medium *m, const pass *depth, float scale) {
+    m->seen = effect_add_pass(e, m->velocity ? "maps" : "march", NULL, NULL);
+    if (!m->seen) return false;
+    pass_add_source(m->seen, m->march);
+    return pass_set_scale(m->seen, scale) && effect_take_light(m->march, m->seen) &&
+           (!m->velocity || pass_set_field(m->seen, "velocity", m->velocity)) &&
+           pass_set_image(m->seen, "depth", pass_output(depth, "depth")) && pass_declare(m->seen);
+}
+
+static bool give_medium(pass *to, const medium *from, char end) {
+    static const char *const images[] = {"color", "transmittance", "reach", "edge"};
+    char name[32];
+    for (size_t i = 0; i < COUNT_OF(images); i++) {
+        snprintf(name, sizeof name, "%s_%c", images[i], end);
+        if (!pass_set_image(to, name, pass_output(from->seen, images[i]))) return false;
+    }
+    snprintf(name, sizeof name, "moves_%c", end);
+    return !from->velocity || pass_set_image(to, name, pass_output(from->seen, "motion"));
+}
+
+// Several as one, with images as a march has them.
+static pass *add_media(effect *e, const medium *all, size_t count, float scale) {
+    pass *p = effect_add_pass(e, "media", NULL, NULL);
+    if (!p || !pass_set_scale(p, scale)) return NULL;
+    for (size_t i = 0; i < count; i++)
+        if (!give_medium(p, &all[i], (char)('a' + i))) return NULL;
+    return pass_declare(p) ? p : NULL;
+}
+
+static bool add_reach(effect *e, pass *shown, float scale, effect_layer *out) {
     pass *p = effect_add_pass(e, "layer", NULL, NULL);
-    if (!p || !pass_set_scale(p, pass_get_scale(medium)) ||
-        !pass_set_image(p, "reach", pass_output(medium, "reach")) ||
-        (moves && !pass_set_image(p, "moves", pass_output(medium, "motion"))) || !pass_declare(p))
+    if (!p || !pass_set_scale(p, scale) ||
+        !pass_set_image(p, "reach", pass_output(shown, "reach")) ||
+        (out->moves && !pass_set_image(p, "moves", pass_output(shown, "motion"))) ||
+        !pass_declare(p))
         return false;
     out->images[EFFECT_LAYER_DEPTH] = pass_output(p, "depth");
     out->images[EFFECT_LAYER_MOTION] = pass_output(p, "motion");
@@ -106,24 +185,24 @@ static bool add_reach(effect *e, pass *medium, bool moves, effect_layer *out) {
 }
 
 bool effect_add_layer(effect *e, const char *source, bool motion, effect_layer *out) {
+    medium all[MOST_MEDIA] = {0};
+    const size_t count = find_media(e, source, all);
+    float scale = 0; // the finest
     *out = (effect_layer){0};
-    pass *march = effect_find_march(e, source);
-    if (!march) return false;
-    tell_what_is_left_out(e, march);
-    const field *velocity = motion ? effect_find_velocity(e, march) : NULL;
-    pass *depth = add_depth(e), *medium = NULL;
+    if (!count) return false;
+    tell_what_is_left_out(e, all, count);
+    for (size_t i = 0; i < count; i++) {
+        scale = fmaxf(scale, pass_get_scale(all[i].march));
+        all[i].velocity = motion ? effect_find_velocity(e, all[i].march) : NULL;
+        out->moves = out->moves || all[i].velocity;
+    }
+    pass *depth = add_depth(e);
     if (!depth) return false;
-    // Motion is found sample by sample where the medium has one of its own, by `maps`.
-    medium = effect_add_pass(e, velocity ? "maps" : "march", NULL, NULL);
-    if (!medium) return false;
-    pass_add_source(medium, march);
-    if (!pass_set_scale(medium, pass_get_scale(march)) || !effect_take_light(march, medium) ||
-        (velocity && !pass_set_field(medium, "velocity", velocity)) ||
-        !pass_set_image(medium, "depth", pass_output(depth, "depth")) || !pass_declare(medium) ||
-        !add_reach(e, medium, velocity, out))
-        return false;
-    out->images[EFFECT_LAYER_COLOR] = pass_output(medium, "color");
-    out->images[EFFECT_LAYER_TRANSMITTANCE] = pass_output(medium, "transmittance");
-    out->moves = velocity;
+    for (size_t i = 0; i < count; i++)
+        if (!add_medium(e, &all[i], depth, scale)) return false;
+    pass *shown = count > 1 ? add_media(e, all, count, scale) : all[0].seen;
+    if (!shown || !add_reach(e, shown, scale, out)) return false;
+    out->images[EFFECT_LAYER_COLOR] = pass_output(shown, "color");
+    out->images[EFFECT_LAYER_TRANSMITTANCE] = pass_output(shown, "transmittance");
     return true;
 }

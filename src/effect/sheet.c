@@ -12,11 +12,15 @@ static const field *field_of(const pass *p, const char *name) {
     return pass_find_key(p, name, &index) == PASS_FIELD ? pass_get_field(p, index) : NULL;
 }
 
+bool effect_is_medium(const pass *p) {
+    return pass_is(p, "march") && field_of(p, "density");
+}
+
 pass *effect_find_march(effect *e, const char *label) {
     strbuf all = {0};
     for (size_t i = 0; i < e->pass_count; i++) {
         pass *p = e->passes[i];
-        if (!pass_is(p, "march") || !field_of(p, "density")) continue;
+        if (!effect_is_medium(p)) continue;
         if (!label || strcmp(pass_label(p), label) == 0) {
             strbuf_free(&all);
             return p;

@@ -54,6 +54,12 @@ static const pass_type layer_type = {
     .shader = "pass/host/layer.comp",
 };
 
+static const pass_type media_type = {
+    .name = "media",
+    .constructed = true,
+    .shader = "pass/host/media.comp",
+};
+
 static const pass_type outline_type = {
     .name = "outline",
     .shader = "pass/picture/outline.comp",
@@ -93,6 +99,7 @@ static const pass_type *const types[] = {
     &stack_type,
     &host_depth_type,
     &layer_type,
+    &media_type,
     &reference_type,
     &over_type,
     &outline_type,

@@ -163,7 +163,8 @@ static void motion_tells_where_things_were(void **state) {
     roil_unload(e);
 }
 
-// Smoke that is carried along by 2 m/s to the right, seen by a camera that stands still.
+// Smoke that is carried along by 2 m/s to the right, beside a ball of smoke that does not move,
+// seen by a camera that stands still.
 static void motion_has_that_of_the_medium(void **state) {
     roil_effect *e = load_layer(
         *state, "wind.lua",
@@ -172,7 +173,9 @@ static void motion_has_that_of_the_medium(void **state) {
         "local b = sphere { position = {-0.9, 0, 0.3}, radius = 0.6, falloff = 0.3 } * (lumps + "
         "0.5)\n"
         "local smoke = march { density = b * 6, steps = 32 }\n"
-        "fx.output = final { smoke }.color\n"
+        "local rock = sphere { position = {0.9, 0, 0.3}, radius = 0.6 }\n"
+        "local still = march { density = rock * 6, steps = 32 }\n"
+        "fx.output = final { over { still, smoke } }.color\n"
         "return fx\n",
         WIDTH);
     roil_view v = straight();
@@ -183,7 +186,8 @@ static void motion_has_that_of_the_medium(void **state) {
     const float deep = at(&depth, 14, 11)[0], *m = at(&motion, 14, 11);
     assert_true(fabsf(m[0] - 0.2f * v.projection[0] / (2 * deep)) < 1e-3f);
     assert_true(fabsf(m[1]) < 1e-3f);
-    assert_true(at(&motion, 40, 11)[0] == 0);
+    assert_true(at(&depth, 33, 11)[0] < 5 && at(&motion, 33, 11)[0] == 0);
+    assert_true(at(&depth, 46, 11)[0] > 1e8f && at(&motion, 46, 11)[0] == 0);
     mem_free(motion.rgba);
     mem_free(depth.rgba);
     roil_unload(e);
@@ -235,6 +239,65 @@ static void lights_are_those_of_the_host(void **state) {
     expect_error(roil_set_lights(e, &(roil_lights){.points = two, .count = 2}),
                  "2 lights besides the sun; the effect is made for 1");
     roil_unload(e);
+}
+
+// Three balls in a row, of which the middle one can be moved. As one medium of their sum they are
+// what all of them together are, from either side.
+#define BALLS                                                                                      \
+    "local fx = effect { name = 'row', fps = 10, first = 0 }\n"                                    \
+    "local place = param { 'place', 0.2, min = -3, max = 3 }\n"                                    \
+    "local a = sphere { position = {-0.3, -1.6, 0.2}, radius = 0.8, falloff = 0.5 }\n"             \
+    "local b = sphere { position = vec(0, place, 0), radius = 0.8, falloff = 0.5 }\n"              \
+    "local c = sphere { position = {0.3, 1.9, -0.2}, radius = 0.8, falloff = 0.5 }\n"
+static const char row[] =
+    BALLS "local function of(ball, r, g, b)\n"
+          "  return march { density = ball * 2, albedo = {0, 0, 0}, steps = 48,\n"
+          "                 emission = ball * vec(r, g, b), resolution = 0.5 * (1 + r) }\n"
+          "end\n"
+          "local near, middle, far = of(a, 1, 0, 0), of(b, 0, 1, 0), of(c, 0, 0, 1)\n"
+          "fx.output = final { over { middle, over { far, near } } }.color\n"
+          "return fx\n";
+static const char sum[] =
+    BALLS "fx.output = final { march { density = (a + b + c) * 2, albedo = {0, 0, 0},\n"
+          "  emission = a * vec(1, 0, 0) + b * vec(0, 1, 0) + c * vec(0, 0, 1), steps = 200 }\n"
+          "}.color\n"
+          "return fx\n";
+
+static void expect_sum(roil_effect *apart, roil_effect *one, const roil_view *v, float slack) {
+    static const roil_layer_image which[] = {ROIL_LAYER_COLOR, ROIL_LAYER_TRANSMITTANCE,
+                                             ROIL_LAYER_DEPTH};
+    ok(roil_set_view(one, v));
+    ok(roil_render(one, 0));
+    for (size_t i = 0; i < COUNT_OF(which); i++) {
+        pixels a = draw(apart, v, which[i]), b = read_image(one, which[i]);
+        assert_int_equal(a.width, b.width);
+        for (size_t k = 0; k < 4 * (size_t)a.width * a.height; k++)
+            if (fabsf(a.rgba[k] - b.rgba[k]) > slack)
+                fail_msg("image %zu, pixel %zu, %zu, channel %zu: %g, in one medium %g", i,
+                         k / 4 % a.width, k / 4 / a.width, k % 4, (double)a.rgba[k],
+                         (double)b.rgba[k]);
+        mem_free(a.rgba);
+        mem_free(b.rgba);
+    }
+}
+
+static void media_lie_one_before_the_other(void **state) {
+    roil_effect *apart = load_text(*state, "row.lua", row),
+                *one = load_text(*state, "sum.lua", sum);
+    ok(roil_make_layer(apart, NULL));
+    ok(roil_make_layer(one, NULL));
+    ok(roil_prepare(apart, WIDTH, HEIGHT));
+    ok(roil_prepare(one, WIDTH, HEIGHT));
+    roil_view front = straight(), behind = front;
+    for (int i = 0; i < 8; i++) behind.view[i] *= -1;
+    behind.view[6] = front.view[6];
+    expect_sum(apart, one, &front, 0.02f);
+    expect_sum(apart, one, &behind, 0.02f);
+    ok(roil_set(apart, "place", "-1.2")); // into the nearest
+    ok(roil_set(one, "place", "-1.2"));
+    expect_sum(apart, one, &front, 0.2f);
+    roil_unload(apart);
+    roil_unload(one);
 }
 
 static void pictures_are_read_without_waiting(void **state) {
@@ -322,6 +385,7 @@ int main(void) {
         cmocka_unit_test(motion_tells_where_things_were),
         cmocka_unit_test(motion_has_that_of_the_medium),
         cmocka_unit_test(lights_are_those_of_the_host),
+        cmocka_unit_test(media_lie_one_before_the_other),
         cmocka_unit_test(pictures_are_read_without_waiting),
         cmocka_unit_test(what_is_not_in_a_layer_is_said),
         cmocka_unit_test(what_a_host_gets_wrong_is_said),
