@@ -11,7 +11,10 @@
 #include "engine_fragment.h"
 #include "engine_vertex.h"
 
-enum { WIDTH = 96, HEIGHT = 54, FRAMES = 60, EFFECTS = 2 };
+#ifndef WIDTH // a host of another size says so before
+enum { WIDTH = 96, HEIGHT = 54 };
+#endif
+enum { FRAMES = 60, EFFECTS = 2 };
 static const VkFormat hdr = VK_FORMAT_R16G16B16A16_SFLOAT, deep = VK_FORMAT_D32_SFLOAT;
 
 // Ends at once: the device may be at work, and drivers do not bear exit() then.
@@ -451,10 +454,10 @@ static void write_picture(const char *path) {
     VK(vkMapMemory(device, host_memory, 0, VK_WHOLE_SIZE, 0, (void **)&halves));
     if (!file) FAIL("%s cannot be written", path);
     fprintf(file, "PF\n%d %d\n-1.0\n", WIDTH, HEIGHT);
-    for (int y = HEIGHT - 1; y >= 0; y--)
-        for (int x = 0; x < WIDTH; x++) {
+    for (int y = (int)HEIGHT - 1; y >= 0; y--)
+        for (int x = 0; x < (int)WIDTH; x++) {
             float rgb[3];
-            for (int c = 0; c < 3; c++) rgb[c] = from_half(halves[4 * (y * WIDTH + x) + c]);
+            for (int c = 0; c < 3; c++) rgb[c] = from_half(halves[4 * (y * (int)WIDTH + x) + c]);
             fwrite(rgb, sizeof rgb, 1, file);
         }
     if (fclose(file) != 0) FAIL("%s cannot be written", path);
