@@ -146,7 +146,7 @@ static void instances_are_exchanged_where_they_match(void **state) {
         templates_build(&b);
         templates_run(&a, 5, false);
         template_seen *old = templates_read(&a, 0);
-        b.f.templates->exchange(&b.f, &a.f);
+        template_set_exchange(&b.f.templates->set, &a.f.templates->set);
         templates_run(&b, 1, false);
         template_seen *now = templates_read(&b, 0);
         int same = 0;

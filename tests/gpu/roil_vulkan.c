@@ -149,8 +149,8 @@ static void what_a_device_lacks_is_named(void **state) {
     ok(r);
     roil_destroy(r);
     vulkan = host();
-    vulkan.index = 7;
-    expect_error(roil_create(&(roil_desc){.vulkan = &vulkan}), "no queue 7 of family 0");
+    vulkan.index = 999;
+    expect_error(roil_create(&(roil_desc){.vulkan = &vulkan}), "no queue 999 of family 0");
     vulkan = host();
     vulkan.unlock = NULL;
     expect_error(roil_create(&(roil_desc){.vulkan = &vulkan}), "`lock` and `unlock` go together");
@@ -434,6 +434,14 @@ static void images_are_read_by_another_device(void **state) {
 
 // ---- memory -----------------------------------------------------------------------------------
 
+// What a card has is limited; what is reserved is also the host's memory, beside it.
+static bool keeps_to_its_limit(const roil_memory *m) {
+    VkPhysicalDeviceProperties is;
+    vkGetPhysicalDeviceProperties(physical, &is);
+    const bool beside = is.deviceType == VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
+    return m->sum <= m->limit && (beside || m->reserved <= m->limit);
+}
+
 static void a_limit_on_memory_is_kept(void **state) {
     (void)state;
     roil *r = open_roil("1M");
@@ -450,7 +458,7 @@ static void a_limit_on_memory_is_kept(void **state) {
     assert_true(color_now() > 0.3f);
     roil_memory m = roil_get_memory(r);
     assert_int_equal(m.limit, 24 << 20);
-    assert_true(m.sum > 0 && m.sum <= m.limit && m.reserved <= m.limit);
+    assert_true(m.sum > 0 && keeps_to_its_limit(&m));
     roil_effect *large = load_text(r, "large.lua", ball); // is left out, and the first goes on
     ok(roil_make_layer(large, NULL));
     expect_error(roil_prepare(large, 2048, 2048), "large.lua: ");
@@ -459,7 +467,7 @@ static void a_limit_on_memory_is_kept(void **state) {
     ok(draw(e, 1, 9));
     assert_true(color_now() > 0.3f);
     m = roil_get_memory(r);
-    assert_true(m.sum <= m.limit && m.reserved <= m.limit);
+    assert_true(keeps_to_its_limit(&m));
     roil_unload(e);
     roil_destroy(r);
     expect_error(open_roil("much"), "an amount of memory 'much'");
@@ -468,7 +476,7 @@ static void a_limit_on_memory_is_kept(void **state) {
 // Frames that would be kept are brought to the device again where it has no memory for all.
 static void a_sequence_keeps_to_the_limit(void **state) {
     (void)state;
-    enum { COUNT = 16, SIDE = 64 };
+    enum { COUNT = 16, SIDE = 128 };
     char path[512];
     uint8_t *voxels = mem_alloc((size_t)COUNT * SIDE * SIDE * SIDE);
     memset(voxels, 99, (size_t)COUNT * SIDE * SIDE * SIDE);
@@ -482,7 +490,7 @@ static void a_sequence_keeps_to_the_limit(void **state) {
     roil_effect *e = load_text(
         r, "long.lua",
         "local fx = effect { name = 'long', frames = 16 }\n"
-        "local cloud = raw { 'long.raw', type = 'u8', size = {64, 64, 64}, frames = 16 }\n"
+        "local cloud = raw { 'long.raw', type = 'u8', size = {128, 128, 128}, frames = 16 }\n"
         "fx.output = final { march { density = cloud.density, steps = 4 } }.color\n"
         "return fx\n");
     ok(roil_prepare(e, 16, 16));
@@ -491,7 +499,7 @@ static void a_sequence_keeps_to_the_limit(void **state) {
     roil_set_log(NULL, NULL, ROIL_INFO);
     assert_non_null(strstr(test_said, "long.raw: memory is there for "));
     roil_memory m = roil_get_memory(r);
-    assert_true(m.sum <= m.limit && m.reserved <= m.limit);
+    assert_true(keeps_to_its_limit(&m));
     roil_unload(e);
     roil_destroy(r);
 }

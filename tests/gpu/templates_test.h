@@ -3,6 +3,7 @@
 #pragma once
 #include "pass/slices/slices_parts.h"
 #include "pass/slices/slices_templates.h"
+#include "pass/slices/slices_templates_parts.h"
 #include "pass_test.h"
 #include "sim/flow.h"
 
@@ -59,7 +60,7 @@ static inline void templates_set(templates_world *t, pass *p, const char *name, 
 // Begins anew.
 static inline void templates_reset(templates_world *t) {
     gpu *device = t->w.host.device;
-    t->f.templates->restart(&t->f);
+    t->f.templates->set.fresh = true;
     gpu_test_ok(gpu_frame_begin(device) && flow_reset(t->f.solver, device) &&
                 gpu_frame_end(device));
 }
@@ -80,7 +81,7 @@ static inline void templates_run(templates_world *t, int steps, bool flows) {
     while (steps > 0) {
         gpu_test_ok(gpu_frame_begin(device));
         for (int i = 0; i < 20 && steps > 0; i++, steps--) {
-            gpu_test_ok(t->f.templates->run(&t->f));
+            gpu_test_ok(slices_templates_run(&t->f));
             if (flows)
                 gpu_test_ok(flow_step(t->f.solver, device, &t->numbers, i == 19 || steps == 1));
         }
