@@ -8,15 +8,16 @@
 
 enum { PATIENCE = 60 }; // seconds until the child counts as blocked
 
-// llvmpipe leaves any loop after 65,535 turns, so there are three of them.
+// Takes a minute: llvmpipe leaves loops, inner ones counted, after 65,535 turns in all.
 static const char endless[] =
-    "uniform float zero;               //= 0 [0, 1] : so that nobody knows what the sum is\n"
+    "uniform float zero;               //= 0 [0, 1] : no compiler knows it\n"
     "writeonly uniform image2D color;  //= output rgba16f : nothing\n"
+    "#define EIGHT(x) x x x x x x x x\n"
     "void main() {\n"
     "    float sum = 0.0;\n"
-    "    for (float a = 0.0; a < 60000.0 + zero; a += 1.0)\n"
-    "        for (float b = 0.0; b < 60000.0 + zero; b += 1.0)\n"
-    "            for (float c = 0.0; c < 60000.0 + zero; c += 1.0) sum += sin(sum + a * b + c);\n"
+    "    for (float a = 0.0; a < 60000.0 + zero; a += 1.0) {\n"
+    "        EIGHT(EIGHT(EIGHT(sum += sin(sum + a);)))\n"
+    "    }\n"
     "    imageStore(color, ivec2(gl_GlobalInvocationID.xy), vec4(sum));\n"
     "}\n";
 

@@ -476,7 +476,7 @@ static void a_limit_on_memory_is_kept(void **state) {
 // Frames that would be kept are brought to the device again where it has no memory for all.
 static void a_sequence_keeps_to_the_limit(void **state) {
     (void)state;
-    enum { COUNT = 16, SIDE = 128 };
+    enum { COUNT = 128, SIDE = 64 };
     char path[512];
     uint8_t *voxels = mem_alloc((size_t)COUNT * SIDE * SIDE * SIDE);
     memset(voxels, 99, (size_t)COUNT * SIDE * SIDE * SIDE);
@@ -489,8 +489,8 @@ static void a_sequence_keeps_to_the_limit(void **state) {
     ok(r);
     roil_effect *e = load_text(
         r, "long.lua",
-        "local fx = effect { name = 'long', frames = 16 }\n"
-        "local cloud = raw { 'long.raw', type = 'u8', size = {128, 128, 128}, frames = 16 }\n"
+        "local fx = effect { name = 'long', frames = 128 }\n"
+        "local cloud = raw { 'long.raw', type = 'u8', size = {64, 64, 64}, frames = 128 }\n"
         "fx.output = final { march { density = cloud.density, steps = 4 } }.color\n"
         "return fx\n");
     ok(roil_prepare(e, 16, 16));
