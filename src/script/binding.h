@@ -178,8 +178,8 @@ pass *pass_make(lua_State *L, const char *type, const char *who, int table, cons
 pass *templates_make(lua_State *L, const char *type, const value_desc *own,
                      const struct picture **image, uint32_t *count);
 extern const char templates_example[]; // of keys
-// Calls script_made: `grid` is what a pass fills, which is declared now. NULL: raises the error.
-void grid_made(lua_State *L, field_grid *grid, const char *name, pass *p);
+// `grid` is what a pass fills that is declared after it. NULL: raises the error.
+void grid_add(lua_State *L, field_grid *grid, const char *name);
 void grid_push_field(lua_State *L, field_grid *grid, const char *name); // raises for no field
 // What stands for a pass that is declared: `from` takes it, and its outputs are images by name.
 void pass_push(lua_State *L, pass *p);

@@ -124,10 +124,10 @@ static int l_air(lua_State *L) {
     if (value_get(L, 1, "boundary") != LUA_TNIL) set_boundary(L, p);
     object->pass = p;
     object->grid = type->open(p, &desc);
-    if (!object->grid || !pass_air_check(p)) script_raise(L);
+    grid_add(L, object->grid, variable);
     object->time_step = pass_air_time_step(p);
     object->voxel_size = desc.voxel_size;
-    grid_made(L, object->grid, variable, p);
+    script_made(L, pass_declare(p) && pass_air_check(p));
     lua_pushvalue(L, result);
     return 1;
 }

@@ -24,7 +24,8 @@ static int l_deposit(lua_State *L) {
                                   value_get_count(L, 1, "deposit", "resolution", RESOLUTION)};
     value_get_box(L, 1, "deposit", &desc.box);
     object->grid = pass_deposit_open(p, &desc);
-    grid_made(L, object->grid, variable, p);
+    grid_add(L, object->grid, variable);
+    script_made(L, pass_declare(p));
     lua_pushvalue(L, result);
     return 1;
 }

@@ -146,12 +146,11 @@ static int l_raw(lua_State *L) {
 
 // ---- what a grid has --------------------------------------------------------------------------
 
-void grid_made(lua_State *L, field_grid *grid, const char *name, pass *p) {
+void grid_add(lua_State *L, field_grid *grid, const char *name) {
     effect *e = script_of(L)->effect;
     if (!grid) script_raise(L);
     effect_add_grid(e, grid);
     effect_name_grid(e, grid, name);
-    script_made(L, pass_declare(p));
 }
 
 void grid_push_field(lua_State *L, field_grid *grid, const char *name) {

@@ -73,7 +73,8 @@ static int l_slices(lua_State *L) {
     object->count = desc.count;
     object->time_step = desc.time_step;
     object->grid = pass_slices_open(p, &desc);
-    grid_made(L, object->grid, variable, p);
+    grid_add(L, object->grid, variable);
+    script_made(L, pass_declare(p));
     lua_pushvalue(L, result);
     return 1;
 }

@@ -45,7 +45,8 @@ static int l_voxels(lua_State *L) {
     vm_charge_memory(L, lua_rawlen(L, 1) * BODY_COST);
     object->pass = pass_make(L, "voxels", "voxels", 1, own);
     object->grid = pass_voxels_open(object->pass, &desc, &context);
-    grid_made(L, object->grid, variable, object->pass);
+    grid_add(L, object->grid, variable);
+    script_made(L, pass_declare(object->pass));
     lua_pushvalue(L, result);
     return 1;
 }
