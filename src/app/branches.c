@@ -91,8 +91,8 @@ static void note_settings(live *l, branch *out) {
         roil_get_control(l->effect, i, &c);
         char *text = is_own(c.name) ? roil_live_setting(l->follow, c.name) : NULL;
         if (!text) continue;
-        MEM_RESERVE(out->settings, out->count + 1, out->capacity);
-        out->settings[out->count++] = (kept_setting){copy_text(c.name), copy_text(text)};
+        *MEM_ADD(out->settings, out->count, out->capacity) =
+            (kept_setting){copy_text(c.name), copy_text(text)};
         roil_free(text);
     }
 }

@@ -37,8 +37,7 @@ static bool add_only(bench_options *o, char *text) {
     if (!equals || equals == text)
         return err_set("--only '%s'; accepted: AXIS=VALUE, as noise=perlin", text);
     *equals = '\0';
-    MEM_RESERVE(o->only, o->only_count + 1, o->only_capacity);
-    o->only[o->only_count++] = (roil_setting){text, equals + 1};
+    *MEM_ADD(o->only, o->only_count, o->only_capacity) = (roil_setting){text, equals + 1};
     return true;
 }
 
@@ -76,8 +75,7 @@ static bool take_numbers(bench_options *o) {
 static bool take_inputs(bench_options *o, poptContext context) {
     const char *input;
     while ((input = poptGetArg(context))) {
-        MEM_RESERVE(o->inputs, o->input_count + 1, o->input_capacity);
-        o->inputs[o->input_count++] = input;
+        *MEM_ADD(o->inputs, o->input_count, o->input_capacity) = input;
     }
     if (o->merge && (!o->input_count || !o->order.folder))
         return err_set("usage: roil bench --merge DIR... -o DIR");

@@ -205,8 +205,7 @@ static void take_chosen(job *j) {
     j->after_hang = NULL;
     for (size_t i = 0; recipe && i < recipe->setting_count; i++) {
         app_settings *s = &j->settings;
-        MEM_RESERVE(s->sets, s->set_count + 1, s->set_capacity);
-        s->sets[s->set_count++] = recipe->settings[i];
+        *MEM_ADD(s->sets, s->set_count, s->set_capacity) = recipe->settings[i];
     }
 }
 

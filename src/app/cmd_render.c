@@ -69,8 +69,8 @@ static bool add_output(job *j, const char *pattern, const char *image) {
         return err_set("output '%s'; accepted: .png, .exr%s", pattern,
                        image ? "" : ", .mp4, .webm, .mov, .gif, .apng");
     if (!app_check_pattern(pattern)) return false;
-    MEM_RESERVE(j->outputs, j->output_count + 1, j->output_capacity);
-    j->outputs[j->output_count++] = (output){.pattern = pattern, .image = image};
+    *MEM_ADD(j->outputs, j->output_count, j->output_capacity) =
+        (output){.pattern = pattern, .image = image};
     return true;
 }
 

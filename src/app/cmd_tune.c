@@ -33,8 +33,7 @@ typedef struct tune_options {
 
 static bool add_axes(tune_options *o, char *text) {
     for (char *at = strtok(text, ","); at; at = strtok(NULL, ",")) {
-        MEM_RESERVE(o->axes, o->axis_count + 1, o->axis_capacity);
-        o->axes[o->axis_count++] = at;
+        *MEM_ADD(o->axes, o->axis_count, o->axis_capacity) = at;
     }
     return o->axis_count > 0 || err_set("--axes names no axis");
 }

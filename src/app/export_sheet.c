@@ -185,8 +185,7 @@ static void list_options(job *j) {
 // ---- which frame goes where -------------------------------------------------------------------
 
 static void add_shot(job *j, double frame, uint32_t cell, double part) {
-    MEM_RESERVE(j->shots, j->shot_count + 1, j->shot_capacity);
-    j->shots[j->shot_count++] = (shot){frame, part, cell};
+    *MEM_ADD(j->shots, j->shot_count, j->shot_capacity) = (shot){frame, part, cell};
 }
 
 static int by_frame(const void *a, const void *b) {

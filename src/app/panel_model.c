@@ -69,8 +69,7 @@ static void add_rows(panel_model *m, panel_section *s, const roil_control *contr
     for (size_t i = 0; i < count; i++) {
         if (!m->shown[i] || is_option(&controls[i]) != options || !belongs(s, &controls[i]))
             continue;
-        MEM_RESERVE(m->rows, m->row_count + 1, m->row_capacity);
-        m->rows[m->row_count++] = i;
+        *MEM_ADD(m->rows, m->row_count, m->row_capacity) = i;
         s->count++;
         s->moved += controls[i].moved;
     }
@@ -87,8 +86,7 @@ static void add_section(panel_model *m, const roil_control *first, const roil_co
     panel_section s = {.part = part_of(first), .title = title_of(first), .first = m->row_count};
     add_rows(m, &s, controls, count, true);
     add_rows(m, &s, controls, count, false);
-    MEM_RESERVE(m->sections, m->section_count + 1, m->section_capacity);
-    m->sections[m->section_count++] = s;
+    *MEM_ADD(m->sections, m->section_count, m->section_capacity) = s;
 }
 
 void panel_model_fill(panel_model *m, const roil_control *controls, size_t count,

@@ -9,16 +9,14 @@
 #include <string.h>
 
 void app_add_preset(app_settings *s, const char *preset) {
-    MEM_RESERVE(s->presets, s->preset_count + 1, s->preset_capacity);
-    s->presets[s->preset_count++] = preset;
+    *MEM_ADD(s->presets, s->preset_count, s->preset_capacity) = preset;
 }
 
 bool app_add_set(app_settings *s, char *text) {
     char *equals = strchr(text, '=');
     if (!equals || equals == text) return err_set("--set '%s'; accepted: NAME=VALUE", text);
     *equals = '\0';
-    MEM_RESERVE(s->sets, s->set_count + 1, s->set_capacity);
-    s->sets[s->set_count++] = (roil_setting){text, equals + 1};
+    *MEM_ADD(s->sets, s->set_count, s->set_capacity) = (roil_setting){text, equals + 1};
     return true;
 }
 

@@ -41,8 +41,7 @@ static void add_card(page *p, const char *section, const char *file) {
     for (size_t i = 0; i < p->count; i++)
         if (strcmp(p->cards[i].file, file) == 0 && strcmp(p->cards[i].section, section) == 0)
             return;
-    MEM_RESERVE(p->cards, p->count + 1, p->capacity);
-    card *c = &p->cards[p->count++];
+    card *c = MEM_ADD(p->cards, p->count, p->capacity);
     *c = (card){.section = section};
     int length;
     const char *name = path_stem(file, &length);

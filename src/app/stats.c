@@ -50,8 +50,7 @@ void app_stats_add(app_stats *s, roil_effect *e, double frame, double seconds) {
     if (f.counter_count > MAX_COUNTERS) f.counter_count = MAX_COUNTERS;
     f.times = mem_copy(times, f.time_count * sizeof *times);
     f.counters = mem_copy(counters, f.counter_count * sizeof *counters);
-    MEM_RESERVE(s->frames, s->count + 1, s->capacity);
-    s->frames[s->count++] = f;
+    *MEM_ADD(s->frames, s->count, s->capacity) = f;
     s->plays = roil_get_playback(e, &s->last);
     s->readout_count = roil_readouts(e, s->readouts, MAX_READOUTS);
     if (s->readout_count > MAX_READOUTS) s->readout_count = MAX_READOUTS;

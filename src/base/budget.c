@@ -333,8 +333,7 @@ void budget_move(budget_part *from, budget_part *to, uint64_t bytes) {
 
 void budget_list_add(budget_list *list, const char *label, uint64_t bytes) {
     if (bytes == 0) return;
-    MEM_RESERVE(list->rows, list->count + 1, list->capacity);
-    budget_row *row = &list->rows[list->count++];
+    budget_row *row = MEM_ADD(list->rows, list->count, list->capacity);
     *row = (budget_row){.bytes = bytes};
     str_copy(row->label, sizeof row->label, label);
 }
@@ -342,8 +341,7 @@ void budget_list_add(budget_list *list, const char *label, uint64_t bytes) {
 bool budget_list_first(budget_list *list, const void *owner) {
     for (size_t i = 0; i < list->owner_count; i++)
         if (list->owners[i] == owner) return false;
-    MEM_RESERVE(list->owners, list->owner_count + 1, list->owner_capacity);
-    list->owners[list->owner_count++] = owner;
+    *MEM_ADD(list->owners, list->owner_count, list->owner_capacity) = owner;
     return true;
 }
 

@@ -292,8 +292,7 @@ static void list_add(file_list *list, size_t *capacity, const char *folder, size
     char *path = mem_alloc(folder_length + length + 1);
     memcpy(path, folder, folder_length);
     memcpy(path + folder_length, name, length);
-    MEM_RESERVE(list->paths, list->count + 1, *capacity);
-    list->paths[list->count++] = path;
+    *MEM_ADD(list->paths, list->count, *capacity) = path;
 }
 
 static int by_bytes(const void *a, const void *b) {

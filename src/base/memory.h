@@ -20,6 +20,10 @@ void *mem_try(void *block, size_t size);
 // Grows `array` to hold at least `count` elements and updates `capacity`. Amortised O(1).
 #define MEM_RESERVE(array, count, capacity)                                                        \
     ((array) = mem_reserve((array), sizeof *(array), (count), &(capacity)))
+// Adds an element, to which it returns a pointer: *MEM_ADD(list, count, capacity) = value. `value`
+// is not of the array itself, which may be moved before or after it is read.
+#define MEM_ADD(array, count, capacity)                                                            \
+    (MEM_RESERVE(array, (count) + 1, capacity), &(array)[(count)++])
 void *mem_reserve(void *array, size_t element, size_t count, size_t *capacity);
 
 #define COUNT_OF(array) (sizeof(array) / sizeof *(array))

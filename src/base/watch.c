@@ -75,8 +75,7 @@ static void add_file(watch_list *list, const char *where, const char *path) {
     char folder[PATH_CAP], key[PATH_CAP];
     path_folder(folder, where);
     if (!path_join(key, folder, path_name(where))) return;
-    MEM_RESERVE(list->files, list->file_count + 1, list->file_capacity);
-    list->files[list->file_count++] = (watch_file){
+    *MEM_ADD(list->files, list->file_count, list->file_capacity) = (watch_file){
         .key = arena_string(&list->memory, key),
         .path = path,
         .folder = add_folder(list, folder),
@@ -252,8 +251,7 @@ static void watch_report(watch *w) {
         watch_file *file = &w->list.files[i];
         if (!file->changed) continue;
         file->changed = false;
-        MEM_RESERVE(paths, count + 1, capacity);
-        paths[count++] = arena_string(&memory, file->path);
+        *MEM_ADD(paths, count, capacity) = arena_string(&memory, file->path);
     }
     pthread_mutex_unlock(&w->lock);
     for (size_t i = 0; i < count; i++) w->desc.changed(w->desc.user, paths[i], when);

@@ -62,8 +62,7 @@ static void add_times(changes *all, const bench_row *before, const bench_row *no
         if (!old) continue;
         bench_change c = {.before = before, .now = now, .name = b->items[i].name};
         change_judge(&c, old, &b->items[i].ms, margin);
-        MEM_RESERVE(all->items, all->count + 1, all->capacity);
-        all->items[all->count++] = c;
+        *MEM_ADD(all->items, all->count, all->capacity) = c;
     }
 }
 

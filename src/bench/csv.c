@@ -20,8 +20,7 @@ typedef struct names { // each once, in the order in which they are met
 static void add_name(names *n, const char *name) {
     for (size_t i = 0; i < n->count; i++)
         if (strcmp(n->items[i], name) == 0) return;
-    MEM_RESERVE(n->items, n->count + 1, n->capacity);
-    n->items[n->count++] = name;
+    *MEM_ADD(n->items, n->count, n->capacity) = name;
 }
 
 typedef struct column { // of names that rows have

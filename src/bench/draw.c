@@ -136,8 +136,7 @@ static bool record_frame(bench_drawing *d, double frame, record *r) {
 static bool keep_picture(bench_drawing *d, record *r) {
     bench_picture p;
     if (!bench_picture_read(d->effect, d->row->width, d->row->height, &p)) return false;
-    MEM_RESERVE(r->pictures, r->picture_count + 1, r->picture_capacity);
-    r->pictures[r->picture_count++] = p;
+    *MEM_ADD(r->pictures, r->picture_count, r->picture_capacity) = p;
     return true;
 }
 

@@ -16,8 +16,7 @@ void bench_collect(bench_collection *c, const char *name, double value) {
         str_copy(c->items[c->count++].name, sizeof c->items->name, name);
     }
     bench_series *s = &c->items[i];
-    MEM_RESERVE(s->values, s->count + 1, s->capacity);
-    s->values[s->count++] = value;
+    *MEM_ADD(s->values, s->count, s->capacity) = value;
 }
 
 bench_times bench_summarise(const bench_collection *c, arena *memory) {

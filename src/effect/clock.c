@@ -17,8 +17,8 @@ struct effect_clock {
 };
 
 void effect_add_clock(effect *e, const field_grid *grid, const field *speed, const field *start) {
-    MEM_RESERVE(e->clocks, e->clock_count + 1, e->clock_capacity);
-    e->clocks[e->clock_count++] = (effect_clock){.grid = grid, .speed = speed, .start = start};
+    *MEM_ADD(e->clocks, e->clock_count, e->clock_capacity) =
+        (effect_clock){.grid = grid, .speed = speed, .start = start};
 }
 
 void effect_free_clocks(effect *e) {

@@ -113,8 +113,7 @@ const effect_layers *effect_add_layers(effect *e, const char *name, field *const
                                        field *const *shared_values, size_t shared_count) {
     effect_layers *l = arena_alloc(&e->memory, sizeof *l);
     *l = (effect_layers){free_group(e, name), count};
-    MEM_RESERVE(e->layers, e->layers_count + 1, e->layers_capacity);
-    e->layers[e->layers_count++] = l;
+    *MEM_ADD(e->layers, e->layers_count, e->layers_capacity) = l;
     e->field_count++;
     for (size_t i = 0; i < 2 * count; i++) {
         field *value = values[i / 2][i % 2];

@@ -194,8 +194,7 @@ void effect_add_file(effect *e, const char *path) {
     if (path[0] != '/' && getcwd(here, sizeof here) && path_join(whole, here, path)) path = whole;
     for (size_t i = 0; i < e->file_count; i++)
         if (strcmp(e->files[i], path) == 0) return;
-    MEM_RESERVE(e->files, e->file_count + 1, e->file_capacity);
-    e->files[e->file_count++] = arena_string(&e->memory, path);
+    *MEM_ADD(e->files, e->file_count, e->file_capacity) = arena_string(&e->memory, path);
 }
 
 const char *effect_find_file(effect *e, const char *name, char path[PATH_CAP]) {
@@ -260,14 +259,12 @@ pass *effect_add_pass(effect *e, const char *type, const char *shader, const cha
     char place[96] = "";
     if (e->hooks.locate) e->hooks.locate(e->hooks.user, place, sizeof place);
     pass_set_place(p, place);
-    MEM_RESERVE(e->passes, e->pass_count + 1, e->pass_capacity);
-    e->passes[e->pass_count++] = p;
+    *MEM_ADD(e->passes, e->pass_count, e->pass_capacity) = p;
     return p;
 }
 
 void effect_add_grid(effect *e, field_grid *grid) {
-    MEM_RESERVE(e->grids, e->grid_count + 1, e->grid_capacity);
-    e->grids[e->grid_count++] = grid;
+    *MEM_ADD(e->grids, e->grid_count, e->grid_capacity) = grid;
     grid->never_waits = e->never_waits;
 }
 
@@ -312,8 +309,7 @@ static const void *load_shared(effect *e, const char *key, const char *root, con
         item =
             content_cache_put(e->contents, key, data, memory, load.files, load.file_count, begin);
     }
-    MEM_RESERVE(e->held, e->held_count + 1, e->held_capacity);
-    e->held[e->held_count++] = item;
+    *MEM_ADD(e->held, e->held_count, e->held_capacity) = item;
     return item->data;
 }
 
@@ -337,8 +333,7 @@ scene_mesh *effect_add_mesh(effect *e, const char *file) {
     for (size_t i = 0; i < mesh->data.file_count; i++) effect_add_file(e, mesh->data.files[i]);
     mesh->name = arena_string(memory, file);
     scene_set_defaults(scene_mesh_values, SCENE_ALL, mesh, memory);
-    MEM_RESERVE(e->meshes, e->mesh_count + 1, e->mesh_capacity);
-    e->meshes[e->mesh_count++] = mesh;
+    *MEM_ADD(e->meshes, e->mesh_count, e->mesh_capacity) = mesh;
     return mesh;
 }
 
@@ -359,13 +354,11 @@ void effect_reset_instances(effect *e) {
 }
 
 void effect_add_node(effect *e, scene_node *node) {
-    MEM_RESERVE(e->nodes, e->node_count + 1, e->node_capacity);
-    e->nodes[e->node_count++] = node;
+    *MEM_ADD(e->nodes, e->node_count, e->node_capacity) = node;
 }
 
 void effect_add_material(effect *e, scene_material *material) {
-    MEM_RESERVE(e->materials, e->material_count + 1, e->material_capacity);
-    e->materials[e->material_count++] = material;
+    *MEM_ADD(e->materials, e->material_count, e->material_capacity) = material;
 }
 
 static const void *load_texture(shared_load *l) {

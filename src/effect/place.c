@@ -11,8 +11,8 @@ typedef struct noted_place {
 void effect_note_place(effect *e, const void *made, const char *file, int line, const char *call) {
     const char *last = e->place_count ? e->places[e->place_count - 1].place.file : "";
     if (strcmp(last, file) != 0) last = arena_string(&e->memory, file);
-    MEM_RESERVE(e->places, e->place_count + 1, e->place_capacity);
-    e->places[e->place_count++] = (noted_place){made, {last, line, call}};
+    *MEM_ADD(e->places, e->place_count, e->place_capacity) =
+        (noted_place){made, {last, line, call}};
 }
 
 const effect_place *effect_find_place(const effect *e, const void *made) {

@@ -115,8 +115,7 @@ static void collect_times(effect *e) {
             e->ahead_times[k].milliseconds += times[i].milliseconds;
             continue;
         }
-        MEM_RESERVE(e->ahead_times, e->ahead_count + 1, e->ahead_capacity);
-        e->ahead_times[e->ahead_count++] = times[i];
+        *MEM_ADD(e->ahead_times, e->ahead_count, e->ahead_capacity) = times[i];
     }
     mem_free(times);
 }

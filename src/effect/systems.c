@@ -136,8 +136,7 @@ bool effect_move_param(effect *e, size_t param, const float value[4]) {
     for (size_t i = 0; s && i < s->moved_count; i++)
         if (s->moved[i].param == param) return true;
     if (!s || isnan(s->frame)) return true; // there is no time yet to go back from
-    MEM_RESERVE(s->moved, s->moved_count + 1, s->moved_capacity);
-    s->moved[s->moved_count++] = now;
+    *MEM_ADD(s->moved, s->moved_count, s->moved_capacity) = now;
     return true;
 }
 

@@ -9,8 +9,7 @@ enum { MOST_NAME = 160 };
 
 void effect_add_shape(effect *e, const char *name, const field *node) {
     if (strcmp(node->kind->group, "shape") != 0) return;
-    MEM_RESERVE(e->shapes, e->shape_count + 1, e->shape_capacity);
-    e->shapes[e->shape_count++] = (effect_shape){name, node};
+    *MEM_ADD(e->shapes, e->shape_count, e->shape_capacity) = (effect_shape){name, node};
 }
 
 size_t effect_shapes(const effect *e, const effect_shape **out) {

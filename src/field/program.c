@@ -96,8 +96,7 @@ static uint32_t intern(interner *in, const field *node) { // NONE: too many
 static uint32_t add_slot(field_program *p, program_slot slot, uint32_t vec4s) {
     slot.at = 4 * p->vec4s;
     p->vec4s += vec4s;
-    MEM_RESERVE(p->slots, p->slot_count + 1, p->slot_capacity);
-    p->slots[p->slot_count++] = slot;
+    *MEM_ADD(p->slots, p->slot_count, p->slot_capacity) = slot;
     return slot.at;
 }
 

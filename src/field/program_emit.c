@@ -61,8 +61,8 @@ uint32_t emit_find_op(emitter *e, op_type type, uint32_t id, uint32_t at, int co
         return 0;
     }
     uint32_t index = (uint32_t)e->op_count;
-    MEM_RESERVE(e->ops, e->op_count + 1, e->op_capacity);
-    e->ops[e->op_count++] = (op){type, id, at, components, cost, .round = 0};
+    *MEM_ADD(e->ops, e->op_count, e->op_capacity) =
+        (op){type, id, at, components, cost, .round = 0};
     map_set(&e->op_places, key, at, index);
     return index;
 }
@@ -157,8 +157,7 @@ static place *list_visible(const emitter *e, size_t *count) {
     for (uint32_t i = 0; i < e->op_count; i++) {
         const op *o = &e->ops[i];
         if (!emit_is_visible(e, i)) continue;
-        MEM_RESERVE(list, *count + 1, capacity);
-        list[(*count)++] = (place){i, o->scope, o->unit, o->sure};
+        *MEM_ADD(list, *count, capacity) = (place){i, o->scope, o->unit, o->sure};
     }
     return list;
 }
@@ -244,8 +243,7 @@ static void write_hoisted(emitter *e) {
     size_t count = 0, capacity = 0;
     for (uint32_t i = 0; i < e->op_count; i++) {
         if (!e->ops[i].hoisted) continue;
-        MEM_RESERVE(list, count + 1, capacity);
-        list[count++] = (hoist){i, e->ops[i].finished};
+        *MEM_ADD(list, count, capacity) = (hoist){i, e->ops[i].finished};
     }
     if (count > 1) qsort(list, count, sizeof *list, by_finish);
     for (size_t i = 0; i < count && !e->failed; i++) compute_here(e, list[i].index);

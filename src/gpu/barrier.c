@@ -28,8 +28,7 @@ static bool want(gpu *g, vk_tracked *tracked, hazard_access access, vk_use use) 
     if (tracked->stamp == uses->stamp) return hazard_merge(&tracked->wanted, &access);
     tracked->stamp = uses->stamp;
     tracked->wanted = access;
-    MEM_RESERVE(uses->list, uses->count + 1, uses->capacity);
-    uses->list[uses->count++] = use;
+    *MEM_ADD(uses->list, uses->count, uses->capacity) = use;
     return true;
 }
 
@@ -81,14 +80,12 @@ static void add_image_barrier(vk_uses *uses, uint32_t *count, VkImageMemoryBarri
         uses->images[*count - 1].subresourceRange.levelCount++;
         return;
     }
-    MEM_RESERVE(uses->images, *count + 1, uses->image_capacity);
-    uses->images[(*count)++] = barrier;
+    *MEM_ADD(uses->images, *count, uses->image_capacity) = barrier;
 }
 
 static void add_buffer_barrier(vk_uses *uses, uint32_t *count, const gpu_buffer *buffer,
                                const hazard_barrier *b) {
-    MEM_RESERVE(uses->buffers, *count + 1, uses->buffer_capacity);
-    uses->buffers[(*count)++] =
+    *MEM_ADD(uses->buffers, *count, uses->buffer_capacity) =
         (VkBufferMemoryBarrier2){.sType = VK_STRUCTURE_TYPE_BUFFER_MEMORY_BARRIER_2,
                                  .srcStageMask = b->source_stages,
                                  .srcAccessMask = b->source_access,

@@ -186,8 +186,7 @@ static bool add_pool(gpu *g, vk_sets *sets) {
                   "creating a pool of descriptors")) {
         return false;
     }
-    MEM_RESERVE(sets->pools, sets->count + 1, sets->capacity);
-    sets->pools[sets->count++] = pool;
+    *MEM_ADD(sets->pools, sets->count, sets->capacity) = pool;
     return true;
 }
 

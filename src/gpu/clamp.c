@@ -44,8 +44,7 @@ static bool is_unchecked(uint32_t storage) {
 static uint32_t obtain_bound(clamper *c, uint32_t type, uint32_t last) {
     for (size_t i = 0; i < c->bound_count; i++)
         if (c->bounds[i].type == type && c->bounds[i].last == last) return c->bounds[i].id;
-    MEM_RESERVE(c->bounds, c->bound_count + 1, c->bound_capacity);
-    c->bounds[c->bound_count++] = (bound){type, last, c->next};
+    *MEM_ADD(c->bounds, c->bound_count, c->bound_capacity) = (bound){type, last, c->next};
     return c->next++;
 }
 

@@ -13,8 +13,7 @@ void vk_retire(gpu *g, void (*destroy)(gpu *g, void *object), void *object) {
         memmove(g->retired, g->retired + g->retired_first, g->retired_count * sizeof *g->retired);
         g->retired_first = 0;
     }
-    MEM_RESERVE(g->retired, g->retired_count + 1, g->retired_capacity);
-    g->retired[g->retired_count++] =
+    *MEM_ADD(g->retired, g->retired_count, g->retired_capacity) =
         (vk_retired){.serial = atomic_load(&g->open_serial), .destroy = destroy, .object = object};
     pthread_mutex_unlock(&g->retire_lock);
 }

@@ -70,8 +70,7 @@ static bool next_chunk(gpu *g, vk_uniforms *u) {
         gpu_buffer *buffer = vk_buffer_create(g, uniform_chunk, VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT,
                                               VK_MEMORY_UNIFORM, "uniforms");
         if (!buffer) return false;
-        MEM_RESERVE(u->chunks, u->count + 1, u->capacity);
-        u->chunks[u->count++] = buffer;
+        *MEM_ADD(u->chunks, u->count, u->capacity) = buffer;
     }
     u->chunk = next;
     u->offset = 0;

@@ -103,8 +103,7 @@ static vk_block *block_create(gpu *g, uint64_t size, uint32_t type, bool image, 
         }
         block->map = map;
     }
-    MEM_RESERVE(g->pool.blocks, g->pool.count + 1, g->pool.capacity);
-    g->pool.blocks[g->pool.count++] = block;
+    *MEM_ADD(g->pool.blocks, g->pool.count, g->pool.capacity) = block;
     return block;
 }
 

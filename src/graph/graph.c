@@ -59,8 +59,7 @@ static bool check_image(const graph *g, const graph_image_desc *d) {
 
 static graph_image image_append(graph *g, const graph_image_desc *desc, uint32_t of) {
     assert(g->image_count < NONE - 1);
-    MEM_RESERVE(g->images, g->image_count + 1, g->image_capacity);
-    graph_node_image *image = &g->images[g->image_count++];
+    graph_node_image *image = MEM_ADD(g->images, g->image_count, g->image_capacity);
     *image = (graph_node_image){.desc = *desc,
                                 .mips = desc->mips ? desc->mips : 1,
                                 .of = of,
@@ -150,8 +149,7 @@ bool graph_add_pass(graph *g, const graph_pass_desc *desc) {
                             .user = desc->user};
     pass.reads = copy_handles(g, desc->reads, &pass.read_count);
     pass.writes = copy_handles(g, desc->writes, &pass.write_count);
-    MEM_RESERVE(g->passes, g->pass_count + 1, g->pass_capacity);
-    g->passes[g->pass_count++] = pass;
+    *MEM_ADD(g->passes, g->pass_count, g->pass_capacity) = pass;
     lookup_add(&g->pass_names, pass.name, strlen(pass.name));
     make_stale(g);
     return true;

@@ -137,8 +137,7 @@ void graph_plan_memory(graph *g) {
 void graph_retire_memory(graph *g) {
     for (size_t i = 0; i < g->slots.count; i++) {
         if (!g->slots.at[i].memory) continue;
-        MEM_RESERVE(g->kept.at, g->kept.count + 1, g->kept.capacity);
-        g->kept.at[g->kept.count++] = g->slots.at[i];
+        *MEM_ADD(g->kept.at, g->kept.count, g->kept.capacity) = g->slots.at[i];
     }
     g->slots.count = 0;
     g->compiled = g->allocated = false;

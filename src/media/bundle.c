@@ -123,8 +123,7 @@ static bool add_entry(bundle *b, const header *h, size_t *capacity, uint64_t at,
     if (folder) return size == 0 || err_set("'%.200s' is a folder with content", name ? name : "");
     if (!name) return err_set("'%.200s' does not lie in a folder", b->name);
     if (b->count == BUNDLE_MAX_FILES) return err_set("it has more than %d files", BUNDLE_MAX_FILES);
-    MEM_RESERVE(b->files, b->count + 1, *capacity);
-    b->files[b->count++] = (bundle_file){name, at, size};
+    *MEM_ADD(b->files, b->count, *capacity) = (bundle_file){name, at, size};
     return true;
 }
 

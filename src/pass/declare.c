@@ -71,8 +71,7 @@ typedef struct image_list {
 } image_list;
 
 static void list_image(image_list *list, graph_image image) {
-    MEM_RESERVE(list->at, list->count + 1, list->capacity);
-    list->at[list->count++] = image;
+    *MEM_ADD(list->at, list->count, list->capacity) = image;
 }
 
 static void list_grid(const pass *p, size_t index, const field_grid *grid, image_list *list) {
@@ -212,8 +211,7 @@ bool pass_follows(const pass *p, graph_image image) {
 bool pass_declare(pass *p) {
     const shader_interface *face = p->face;
     pass_host *host = p->host;
-    MEM_RESERVE(host->declared, host->declared_count + 1, host->declared_capacity);
-    host->declared[host->declared_count++] = p;
+    *MEM_ADD(host->declared, host->declared_count, host->declared_capacity) = p;
     if (p->host->before_declare && !p->host->before_declare(p->host->user, p)) return false;
     for (size_t i = 0; i < face->field_count; i++)
         if (face->fields[i].required && !p->fields[i])
@@ -236,8 +234,8 @@ bool pass_complete(pass *p) {
 
 void pass_host_add_grid_image(pass_host *host, const field_grid *grid, int index,
                               graph_image image) {
-    MEM_RESERVE(host->grid_images, host->grid_image_count + 1, host->grid_image_capacity);
-    host->grid_images[host->grid_image_count++] = (pass_grid){grid, index, image};
+    *MEM_ADD(host->grid_images, host->grid_image_count, host->grid_image_capacity) =
+        (pass_grid){grid, index, image};
 }
 
 graph_image pass_grid_image(const pass_host *host, const field_grid *grid, int index) {

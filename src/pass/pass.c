@@ -240,8 +240,7 @@ bool pass_set_format(pass *p, const char *output, gpu_format format) {
 bool pass_add_mesh(pass *p, scene_mesh *mesh) {
     if (!p->type || p->type->meshes == PASS_REFUSES_MESHES)
         return err_set("%s: takes no meshes; pass them to geometry", p->label);
-    MEM_RESERVE(p->meshes, p->mesh_count + 1, p->mesh_capacity);
-    p->meshes[p->mesh_count++] = mesh;
+    *MEM_ADD(p->meshes, p->mesh_count, p->mesh_capacity) = mesh;
     return true;
 }
 
@@ -258,8 +257,7 @@ bool pass_add_instances(pass *p, scene_instances *instances) {
     if (!p->type || p->type->meshes == PASS_REFUSES_MESHES)
         return err_set("%s: takes no instances; pass them to geometry", p->label);
     if (!pass_draws_meshes(p)) return add_shapes(p, instances);
-    MEM_RESERVE(p->instances, p->instances_count + 1, p->instances_capacity);
-    p->instances[p->instances_count++] = instances;
+    *MEM_ADD(p->instances, p->instances_count, p->instances_capacity) = instances;
     return true;
 }
 

@@ -70,8 +70,7 @@ static void find_parents(pass *p) {
 void pass_add_uniforms_of(pass *p, pass *source) {
     for (size_t i = 0; i < p->source_count; i++)
         if (p->sources[i] == source) return;
-    MEM_RESERVE(p->sources, p->source_count + 1, p->source_capacity);
-    p->sources[p->source_count++] = source;
+    *MEM_ADD(p->sources, p->source_count, p->source_capacity) = source;
     find_parents(p);
 }
 

@@ -185,8 +185,7 @@ static bool add_input(owned_inputs *own, const char *name, const char *path, uin
                err_set("%s: two files that it reads are called '%s': %s and %s", own->named, name,
                        own->list[i].path, path);
     }
-    MEM_RESERVE(own->list, in->count + 1, own->capacity);
-    own->list[in->count++] =
+    *MEM_ADD(own->list, in->count, own->capacity) =
         (roil_input){arena_string(&own->memory, name), arena_string(&own->memory, path), size};
     return true;
 }

@@ -18,8 +18,7 @@ edited_file *edits_open_file(roil_edits *x, const char *path) {
     void *text;
     size_t size;
     if (!file_read_inside(x->root, path, SOURCE_MAX, &text, &size)) return NULL;
-    MEM_RESERVE(x->files, x->file_count + 1, x->file_capacity);
-    edited_file *f = &x->files[x->file_count++];
+    edited_file *f = MEM_ADD(x->files, x->file_count, x->file_capacity);
     *f = (edited_file){.path = arena_string(&x->memory, path), .before = text};
     return f;
 }

@@ -21,8 +21,7 @@ bool roil_keep(roil_effect *e, const char *image) {
     if (!roil_find_image(e, image).id) return mem_leave(false);
     for (size_t i = 0; i < e->kept_count; i++)
         if (strcmp(e->kept[i], image) == 0) return mem_leave(true);
-    MEM_RESERVE(e->kept, e->kept_count + 1, e->kept_capacity);
-    e->kept[e->kept_count++] = mem_copy(image, strlen(image) + 1);
+    *MEM_ADD(e->kept, e->kept_count, e->kept_capacity) = mem_copy(image, strlen(image) + 1);
     return mem_leave(true);
 }
 

@@ -32,9 +32,8 @@ static void remove_setting(roil_live *l, live_setting *s) {
 static void add_setting(roil_live *l, const roil_setting *s, const char *initial, bool preset) {
     live_setting *old = find_setting(l, s->name);
     if (old) remove_setting(l, old);
-    MEM_RESERVE(l->settings, l->setting_count + 1, l->setting_capacity);
-    l->settings[l->setting_count++] = (live_setting){copy_text(s->name), copy_text(s->value),
-                                                     initial ? copy_text(initial) : NULL, preset};
+    *MEM_ADD(l->settings, l->setting_count, l->setting_capacity) = (live_setting){
+        copy_text(s->name), copy_text(s->value), initial ? copy_text(initial) : NULL, preset};
 }
 
 static void put_setting(roil_live *l, const char *name, const char *text, const char *initial) {

@@ -167,8 +167,7 @@ static const template_file *read_template(roil_effect *e, const char *file) {
         t->changed = changed;
         str_copy(t->file, sizeof t->file, file);
         take_tile(t, &read);
-        MEM_RESERVE(e->templates, e->template_count + 1, e->template_capacity);
-        e->templates[e->template_count++] = t;
+        *MEM_ADD(e->templates, e->template_count, e->template_capacity) = t;
     }
     arena_free(&memory);
     return t;

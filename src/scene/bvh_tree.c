@@ -39,8 +39,7 @@ static void add_pieces(builder *b, uint32_t part, uint32_t level) {
         const float *corners[3];
         for (uint32_t c = 0; c < 3; c++) corners[c] = corner(b->mesh, i + c);
         if (!has_area(corners[0], corners[1], corners[2])) continue;
-        MEM_RESERVE(b->pieces, b->piece_count + 1, b->piece_capacity);
-        bvh_piece *p = &b->pieces[b->piece_count++];
+        bvh_piece *p = MEM_ADD(b->pieces, b->piece_count, b->piece_capacity);
         *p = (bvh_piece){.box = bvh_bounds_empty(), .first = i, .part = part};
         for (int c = 0; c < 3; c++) {
             bvh_bounds point;

@@ -89,8 +89,7 @@ size_t instances_grid_near(instances_grid *g, const struct instance_entry *place
             uint32_t index = g->order[i];
             float square = square_between(places[index].place.v, point);
             if (!(square <= radius * radius)) continue;
-            MEM_RESERVE(found, count + 1, room);
-            found[count++] = (near_place){square, index};
+            *MEM_ADD(found, count, room) = (near_place){square, index};
         }
     }
     if (count) qsort(found, count, sizeof *found, by_distance);

@@ -35,8 +35,8 @@ bool surface_has_holes(const mesh_data *mesh, const mesh_part *part) {
 // `first`: the index of each texture's first texel.
 static void add_material(surfaces *s, const mesh_data *mesh, const mesh_part *part,
                          const uint32_t *first) {
-    MEM_RESERVE(s->materials, s->material_count + 1, s->material_capacity);
-    struct surface_material *material = &s->materials[s->material_count++];
+    struct surface_material *material =
+        MEM_ADD(s->materials, s->material_count, s->material_capacity);
     *material = (struct surface_material){0};
     memcpy(material->color.v, part->color, sizeof part->color);
     if (part->texture < 0) return;

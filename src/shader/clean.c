@@ -28,8 +28,7 @@ static void find_dead(const spirv *code, const uint32_t *live, size_t live_count
                         storage == SpvStorageClassUniform ||
                         storage == SpvStorageClassStorageBuffer;
         if (!resource || contains(live, live_count, id)) continue;
-        MEM_RESERVE(dead->items, dead->count + 1, dead->capacity);
-        dead->items[dead->count++] = id;
+        *MEM_ADD(dead->items, dead->count, dead->capacity) = id;
     }
 }
 

@@ -30,8 +30,8 @@ static void list_functions(expansion *e) {
         const uint32_t *w = code->words + i;
         uint32_t opcode = w[0] & SpvOpCodeMask, length = w[0] >> SpvWordCountShift;
         if (opcode == SpvOpFunction) {
-            MEM_RESERVE(e->functions, e->count + 1, e->capacity);
-            e->functions[e->count++] = (function){.at = i + length, .end = i + length};
+            *MEM_ADD(e->functions, e->count, e->capacity) =
+                (function){.at = i + length, .end = i + length};
             e->index_of[w[2]] = (uint32_t)e->count;
         } else if (opcode == SpvOpFunctionEnd && e->count) {
             e->functions[e->count - 1].end = i;

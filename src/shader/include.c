@@ -68,8 +68,7 @@ static int find_file(const loader *l, place at, const char *name, library_file *
 }
 
 static void note_include(shader_unit *unit, place at, const char *name, int target) {
-    MEM_RESERVE(unit->includes, unit->include_count + 1, unit->include_capacity);
-    unit->includes[unit->include_count++] =
+    *MEM_ADD(unit->includes, unit->include_count, unit->include_capacity) =
         (unit_include){at.file, target, arena_string(&unit->memory, name)};
 }
 
@@ -194,8 +193,7 @@ static bool add_name(loader *l, place at, const char *name, int depth) {
     if (depth > UNIT_MAX_DEPTH) return fail(l, at, "includes are nested more than 32 deep");
     if (l->unit->file_count == UNIT_MAX_FILES) return fail(l, at, "more than 1000 files included");
     if (!text && !read_text(l, at, &file)) return false;
-    MEM_RESERVE(l->unit->files, l->unit->file_count + 1, l->unit->file_capacity);
-    l->unit->files[l->unit->file_count++] = file;
+    *MEM_ADD(l->unit->files, l->unit->file_count, l->unit->file_capacity) = file;
     return add_file(l, (int)l->unit->file_count - 1, depth);
 }
 
@@ -223,12 +221,12 @@ static bool include(loader *l, place at, const char *code, int depth) {
 
 static void add_line(shader_unit *unit, place at, const char *line, const char *code, size_t length,
                      size_t comment) {
-    MEM_RESERVE(unit->lines, unit->line_count + 1, unit->line_capacity);
-    unit->lines[unit->line_count++] = (unit_line){.file = at.file,
-                                                  .number = at.line,
-                                                  .start = unit->text.length,
-                                                  .length = length,
-                                                  .comment = comment};
+    *MEM_ADD(unit->lines, unit->line_count, unit->line_capacity) =
+        (unit_line){.file = at.file,
+                    .number = at.line,
+                    .start = unit->text.length,
+                    .length = length,
+                    .comment = comment};
     strbuf_append(&unit->text, line, length);
     strbuf_append(&unit->text, "\n", 1);
     strbuf_append(&unit->code, code, length);

@@ -56,8 +56,7 @@ static bool after_is_known(const reader *r, const cursor *c, const shader_field 
 static bool add_option(reader *r, cursor *c) {
     value_desc option = {0};
     if (!annotation_option(c, &option) || !name_is_free(r, c, option.name)) return false;
-    MEM_RESERVE(r->options, r->option_count + 1, r->option_capacity);
-    r->options[r->option_count++] = option;
+    *MEM_ADD(r->options, r->option_count, r->option_capacity) = option;
     return true;
 }
 
@@ -66,8 +65,7 @@ static bool add_field(reader *r, cursor *c) {
     if (!annotation_field(c, &field) || !name_is_free(r, c, field.name) ||
         !after_is_known(r, c, &field))
         return false;
-    MEM_RESERVE(r->fields, r->field_count + 1, r->field_capacity);
-    r->fields[r->field_count++] = field;
+    *MEM_ADD(r->fields, r->field_count, r->field_capacity) = field;
     return true;
 }
 
@@ -78,8 +76,7 @@ static bool add_counter(reader *r, cursor *c) {
     for (size_t i = 0; i < r->counter_count; i++)
         if (strcmp(r->counters[i].name, counter.name) == 0)
             return cursor_fail(c, "%s: there is already a counter of this name", counter.name);
-    MEM_RESERVE(r->counters, r->counter_count + 1, r->counter_capacity);
-    r->counters[r->counter_count++] = counter;
+    *MEM_ADD(r->counters, r->counter_count, r->counter_capacity) = counter;
     return true;
 }
 
@@ -102,8 +99,7 @@ static void insert_format(reader *r, const shader_image *image, size_t offset) {
     strbuf_add(&text, "layout(FORMAT_");
     unit_add_upper(&text, image->name);
     strbuf_add(&text, ") ");
-    MEM_RESERVE(r->inserts->items, r->inserts->count + 1, r->inserts->capacity);
-    r->inserts->items[r->inserts->count++] =
+    *MEM_ADD(r->inserts->items, r->inserts->count, r->inserts->capacity) =
         (unit_insert){.offset = offset, .text = arena_string(r->memory, text.text)};
     strbuf_free(&text);
 }
@@ -113,16 +109,14 @@ static bool add_image(reader *r, cursor *c, const declaration *d, size_t offset)
     if (!annotation_image(c, d, &image) || !name_is_free(r, c, image.name)) return false;
     if (image.output && d->uniform && d->format == GPU_FORMAT_NONE)
         insert_format(r, &image, offset);
-    MEM_RESERVE(r->images, r->image_count + 1, r->image_capacity);
-    r->images[r->image_count++] = image;
+    *MEM_ADD(r->images, r->image_count, r->image_capacity) = image;
     return true;
 }
 
 static bool add_uniform(reader *r, cursor *c, const declaration *d) {
     value_desc uniform;
     if (!annotation_uniform(c, d, &uniform) || !name_is_free(r, c, uniform.name)) return false;
-    MEM_RESERVE(r->uniforms, r->uniform_count + 1, r->uniform_capacity);
-    r->uniforms[r->uniform_count++] = uniform;
+    *MEM_ADD(r->uniforms, r->uniform_count, r->uniform_capacity) = uniform;
     return true;
 }
 

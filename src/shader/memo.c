@@ -130,8 +130,7 @@ static memo_text *find_text(library_memo *m, const char *path) {
     for (size_t i = 0; i < m->text_count; i++)
         if (m->texts[i].path_hash == hash && strcmp(m->texts[i].path, path) == 0)
             return &m->texts[i];
-    MEM_RESERVE(m->texts, m->text_count + 1, m->text_capacity);
-    memo_text *entry = &m->texts[m->text_count++];
+    memo_text *entry = MEM_ADD(m->texts, m->text_count, m->text_capacity);
     *entry = (memo_text){.path_hash = hash, .path = arena_string(&m->memory, path)};
     return entry;
 }

@@ -77,8 +77,7 @@ static uint32_t chunk_size(uint64_t left) {
 }
 
 void checkpoint_add(checkpoint_list *list, const checkpoint_part *part) {
-    MEM_RESERVE(list->parts, list->count + 1, list->capacity);
-    list->parts[list->count++] = *part;
+    *MEM_ADD(list->parts, list->count, list->capacity) = *part;
 }
 
 void checkpoint_add_text(checkpoint_list *list, const char *label, const char *part,

@@ -27,8 +27,7 @@ void picture_draw(const roil_texture *texture, const float clip[4], const uint16
                   size_t count, size_t first_vertex) {
     if (!count) return;
     MEM_RESERVE(held.indices, held.index_count + count, held.index_capacity);
-    MEM_RESERVE(held.draws, held.draw_count + 1, held.draw_capacity);
-    roil_draw *draw = &held.draws[held.draw_count++];
+    roil_draw *draw = MEM_ADD(held.draws, held.draw_count, held.draw_capacity);
     *draw = (roil_draw){texture, (uint32_t)held.index_count, (uint32_t)count, {0}};
     memcpy(draw->clip, clip, sizeof draw->clip);
     for (size_t i = 0; i < count; i++)

@@ -5,15 +5,13 @@
 #include <string.h>
 
 air_meshes *air_add_giver(air *a) {
-    MEM_RESERVE(a->givers, a->giver_count + 1, a->giver_capacity);
-    air_meshes *m = &a->givers[a->giver_count++];
+    air_meshes *m = MEM_ADD(a->givers, a->giver_count, a->giver_capacity);
     *m = (air_meshes){.updated = (double)NAN};
     return m;
 }
 
 void air_add_body(air_meshes *m, const scene_mesh *mesh, voxels_rule rule) {
-    MEM_RESERVE(m->bodies, m->count + 1, m->capacity);
-    m->bodies[m->count++] = (voxels_body){mesh, rule};
+    *MEM_ADD(m->bodies, m->count, m->capacity) = (voxels_body){mesh, rule};
 }
 
 void pass_air_add_collider(pass *p, scene_mesh *mesh, voxels_rule rule) {

@@ -74,8 +74,7 @@ bool pass_air_add_source(pass *p, pass *source) {
     if (meshes) s->giver = a->giver_count;
     if (a->source_count < 32) s->note = UINT32_C(1) << a->source_count;
     source->runs_in = p;
-    MEM_RESERVE(a->sources, a->source_count + 1, a->source_capacity);
-    a->sources[a->source_count++] = source;
+    *MEM_ADD(a->sources, a->source_count, a->source_capacity) = source;
     bool fine = true;
     for (size_t i = 0; i < a->kind->source_field_count && fine; i++) {
         const int name = a->kind->source_fields[i];

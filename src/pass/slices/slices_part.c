@@ -28,8 +28,7 @@ bool slices_is_template(const pass *part) {
 
 void slices_add_part(slices_flow *f, pass *part) {
     part->runs_in = f->pass;
-    MEM_RESERVE(f->parts, f->part_count + 1, f->part_capacity);
-    f->parts[f->part_count++] = part;
+    *MEM_ADD(f->parts, f->part_count, f->part_capacity) = part;
 }
 
 static void note_used(slices_flow *f, const pass *part) {
