@@ -3,7 +3,7 @@
 #include "app/device_options.h"
 #include "base/file.h"
 #include "base/memory.h"
-#include "base/str.h"
+#include "base/words.h"
 #include <jansson.h>
 #include <popt.h>
 #include <stdio.h>
@@ -154,13 +154,11 @@ static int info(info_job *j) {
             "printed as dot, which programs read");
     if (strcmp(what, "params") == 0 || strcmp(what, "graph") == 0) return info_effect(j);
     if (plain) return info_print(j, roil_info_vdb(what));
-    const char *near = str_nearest(what, topics, COUNT_OF(topics));
-    if (near)
-        return app_fail(APP_BAD_USAGE, "info: unknown topic '%s'; did you mean '%s'?", what, near);
-    return app_fail(APP_BAD_USAGE,
-                    "info: unknown topic '%s'; accepted: device, passes [NAME], fields [NAME], "
-                    "effects, params EFFECT.lua, graph EFFECT.lua, FILE.vdb, EFFECT.lua, FILE.roil",
-                    what);
+    words_refuse(topics, COUNT_OF(topics), what,
+                 "accepted: device, passes [NAME], fields [NAME], effects, params EFFECT.lua, "
+                 "graph EFFECT.lua, FILE.vdb, EFFECT.lua, FILE.roil",
+                 "unknown topic '%s'", what);
+    return app_fail(APP_BAD_USAGE, "info: %s", roil_error());
 }
 
 int cmd_info(int argc, const char **argv) {

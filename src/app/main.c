@@ -4,7 +4,7 @@
 #include "base/file.h"
 #include "base/log.h"
 #include "base/memory.h"
-#include "base/str.h"
+#include "base/words.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <inttypes.h>
@@ -136,14 +136,8 @@ static int main_run_command(int argc, char **argv) {
     if (str_ends_with(wanted, ".lua") || str_ends_with(wanted, ".roil"))
         return app_fail(APP_BAD_USAGE, "'%s' is no command; `roil live %s` shows an effect", wanted,
                         wanted);
-    const char *near = str_nearest(wanted, names, COUNT_OF(names));
-    if (near)
-        return app_fail(APP_BAD_USAGE, "unknown command '%s'; did you mean '%s'?", wanted, near);
-    strbuf accepted = {0};
-    for (size_t i = 0; i < COUNT_OF(names); i++) strbuf_add(&accepted, i ? ", %s" : "%s", names[i]);
-    app_fail(APP_BAD_USAGE, "unknown command '%s'; accepted: %s", wanted, strbuf_text(&accepted));
-    strbuf_free(&accepted);
-    return APP_BAD_USAGE;
+    words_refuse(names, COUNT_OF(names), wanted, NULL, "unknown command '%s'", wanted);
+    return app_fail(APP_BAD_USAGE, "%s", err_get());
 }
 
 int main(int argc, char **argv) {

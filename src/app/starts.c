@@ -1,7 +1,7 @@
 #include "app/starts.h"
 #include "base/error.h"
 #include "base/memory.h"
-#include "base/str.h"
+#include "base/words.h"
 #include <stdio.h>
 #include <string.h>
 
@@ -40,11 +40,9 @@ static bool find_shipped(const char *home, const char *wanted, char out[PATH_CAP
         whole |= same;
     }
     bool done = found && str_copy(out, PATH_CAP, found);
-    const char *near = str_nearest(wanted, (const char *const *)names, files.count);
-    if (!found && near)
-        err_set("no effect '%s' comes with roil; did you mean '%s'?", wanted, near);
-    else if (!found)
-        err_set("no effect '%s' comes with roil; `roil info effects` lists them", wanted);
+    if (!found)
+        words_refuse((const char *const *)names, files.count, wanted,
+                     "`roil info effects` lists them", "no effect '%s' comes with roil", wanted);
     for (size_t i = 0; i < files.count; i++) mem_free(names[i]);
     mem_free(names);
     file_list_free(&files);

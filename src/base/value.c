@@ -2,6 +2,7 @@
 #include "base/value.h"
 #include "base/error.h"
 #include "base/srgb.h"
+#include "base/words.h"
 #include <errno.h>
 #include <math.h>
 #include <stdarg.h>
@@ -61,14 +62,8 @@ static int parse_numbers(const char *text, float out[4]) {
     return 0;
 }
 
-static int find_word(const char *const *words, size_t count, const char *text) {
-    for (size_t i = 0; i < count; i++)
-        if (strcmp(words[i], text) == 0) return (int)i;
-    return -1;
-}
-
 int value_find_word(const value_desc *d, const char *text) {
-    return find_word(d->words, d->word_count, text);
+    return words_find(d->words, d->word_count, text);
 }
 
 static bool refuse_text(const char *who, const char *text, const char *accepted) {
@@ -80,8 +75,7 @@ static bool parse_word(const value_desc *d, const char *who, const char *text, f
     *out = (float)word;
     if (word >= 0) return true;
     strbuf list = {0};
-    for (size_t i = 0; i < d->word_count; i++)
-        strbuf_add(&list, "%s%s", i ? ", " : "", d->words[i]);
+    words_print(d->words, d->word_count, &list);
     refuse_text(who, text, strbuf_text(&list));
     strbuf_free(&list);
     return false;
@@ -89,7 +83,7 @@ static bool parse_word(const value_desc *d, const char *who, const char *text, f
 
 static bool parse_bool(const char *who, const char *text, float *out) {
     static const char *const words[] = {"false", "true", "off", "on", "no", "yes", "0", "1"};
-    int index = find_word(words, sizeof words / sizeof *words, text);
+    int index = words_find(words, sizeof words / sizeof *words, text);
     *out = (float)(index & 1);
     return index >= 0 || refuse_text(who, text, "true, false");
 }

@@ -1,7 +1,7 @@
 // Chooses which rows of a sweep are measured.
 #include "base/error.h"
 #include "base/memory.h"
-#include "base/str.h"
+#include "base/words.h"
 #include "bench/sweep.h"
 #include <fnmatch.h>
 #include <string.h>
@@ -14,24 +14,20 @@ static const sweep_axis *find_axis(const sweep *s, const char *name) {
         known[2 * i] = a->name;
         known[2 * i + 1] = a->label;
     }
-    const char *near = str_nearest(name, known, 2 * s->axis_count);
     strbuf list = {0};
+    strbuf_add(&list, "accepted: ");
     for (size_t i = 0; i < s->axis_count; i++)
         strbuf_add(&list, "%s%s", i ? ", " : "", s->axes[i].name);
-    if (near)
-        err_set("%s has no axis '%.64s'; did you mean '%s'?", s->file, name, near);
-    else
-        err_set("%s has no axis '%.64s'; accepted: %s", s->file, name, strbuf_text(&list));
+    words_refuse(known, 2 * s->axis_count, name, strbuf_text(&list), "%s has no axis '%.64s'",
+                 s->file, name);
     strbuf_free(&list);
     return NULL;
 }
 
 static bool has_value(const sweep *s, const sweep_axis *axis, const char *value) {
-    for (size_t i = 0; i < axis->value_count; i++)
-        if (strcmp(axis->values[i], value) == 0) return true;
+    if (words_find(axis->values, axis->value_count, value) >= 0) return true;
     strbuf list = {0};
-    for (size_t i = 0; i < axis->value_count; i++)
-        strbuf_add(&list, "%s%s", i ? ", " : "", axis->values[i]);
+    words_print(axis->values, axis->value_count, &list);
     err_set("%s: axis '%s' has no value '%.64s'; accepted: %s", s->file, axis->name, value,
             strbuf_text(&list));
     strbuf_free(&list);

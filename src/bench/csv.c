@@ -2,7 +2,7 @@
 // has.
 #include "base/file.h"
 #include "base/memory.h"
-#include "base/str.h"
+#include "base/words.h"
 #include "bench/json.h"
 #include "bench/results.h"
 #include <inttypes.h>
@@ -18,8 +18,7 @@ typedef struct names { // each once, in the order in which they are met
 } names;
 
 static void add_name(names *n, const char *name) {
-    for (size_t i = 0; i < n->count; i++)
-        if (strcmp(n->items[i], name) == 0) return;
+    if (words_find(n->items, n->count, name) >= 0) return;
     *MEM_ADD(n->items, n->count, n->capacity) = name;
 }
 

@@ -1,7 +1,7 @@
 // Chooses the controls that affect an effect's quality, and values to try.
 #include "base/error.h"
 #include "base/memory.h"
-#include "base/str.h"
+#include "base/words.h"
 #include "bench/tune.h"
 #include <math.h>
 #include <stdlib.h>
@@ -136,8 +136,7 @@ static void axis_swap(tune_axis *a, size_t i, size_t k) {
 static void put_exact_last(tune_axis *a) {
     static const char *const words[] = {"false", "off", "none", "exact"};
     for (size_t i = 0; i + 1 < a->count; i++)
-        for (size_t k = 0; k < COUNT_OF(words); k++)
-            if (strcmp(a->values[i], words[k]) == 0) axis_swap(a, i, i + 1);
+        if (words_find(words, COUNT_OF(words), a->values[i]) >= 0) axis_swap(a, i, i + 1);
 }
 
 static bool has_words(const roil_control *c) {

@@ -1,6 +1,7 @@
 // The list of all controls, and how they are set.
 #include "base/error.h"
 #include "base/memory.h"
+#include "base/words.h"
 #include "effect/effect_impl.h"
 #include <ctype.h>
 #include <string.h>
@@ -154,10 +155,10 @@ static bool unknown(effect *e, const char *name) {
         return err_set("the effect handles no events: its script has no fx:on_key, fx:on_click");
     const char **names = mem_alloc((e->control_count + 1) * sizeof *names);
     for (size_t i = 0; i < e->control_count; i++) names[i] = e->controls[i]->face.name;
-    const char *near = str_nearest(name, names, e->control_count);
+    words_refuse(names, e->control_count, name, "`roil info params` lists what can be set",
+                 "nothing is named '%s'", name);
     mem_free(names);
-    if (near) return err_set("nothing is named '%s'; did you mean '%s'?", name, near);
-    return err_set("nothing is named '%s'; `roil info params` lists what can be set", name);
+    return false;
 }
 
 static control *find(effect *e, const char *name) {

@@ -2,7 +2,7 @@
 #include "effect/events.h"
 #include "base/error.h"
 #include "base/memory.h"
-#include "base/str.h"
+#include "base/words.h"
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
@@ -14,9 +14,8 @@ static const char form[] = "SECONDS click X Y, or SECONDS key NAME, as 2.5 click
 // Other keys belong to the live window.
 static bool is_key(const char *name) {
     static const char *const long_names[] = {"enter", "up", "down"};
-    for (size_t i = 0; i < COUNT_OF(long_names); i++)
-        if (strcmp(name, long_names[i]) == 0) return true;
-    return (islower((unsigned char)name[0]) || isdigit((unsigned char)name[0])) && !name[1];
+    return words_find(long_names, COUNT_OF(long_names), name) >= 0 ||
+           ((islower((unsigned char)name[0]) || isdigit((unsigned char)name[0])) && !name[1]);
 }
 
 static bool check_key(const char *name) {

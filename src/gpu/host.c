@@ -6,6 +6,7 @@
 // its own work, as libplacebo's pl_vulkan_hold and pl_vulkan_release do it.
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/words.h"
 #include "gpu/vk.h"
 #include <assert.h>
 #include <string.h>
@@ -35,9 +36,7 @@ static bool find_calls(const gpu_host *host, vk_calls *vk) {
 }
 
 static bool has_name(const gpu_host *host, const char *name) {
-    for (uint32_t i = 0; i < host->extension_count; i++)
-        if (strcmp(host->extensions[i], name) == 0) return true;
-    return false;
+    return words_find(host->extensions, host->extension_count, name) >= 0;
 }
 
 static bool is_usable(const vk_choice *choice) {

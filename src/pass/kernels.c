@@ -2,6 +2,7 @@
 // what the pass knows. Each slot's source is found once, when the kernel is compiled.
 #include "base/error.h"
 #include "base/memory.h"
+#include "base/words.h"
 #include "base/worker.h"
 #include "pass/pass_impl.h"
 #include "pass/ranges.h"
@@ -100,18 +101,14 @@ void pass_define_flag(pass_defines *out, const char *name, bool value) {
     pass_define(out, name, value ? "1" : "0");
 }
 
-static int find_string(kernel_names names, const char *name) {
-    for (size_t i = 0; i < names.count; i++)
-        if (strcmp(names.items[i], name) == 0) return (int)i;
-    return -1;
-}
-
 static kernel_names solver_names(const pass *p) {
     return p->type && p->type->solver ? p->type->solver->names : (kernel_names){0};
 }
 
 static bool is_of_type(const pass *p, const char *name) {
-    return find_string(pass_names_of(p), name) >= 0 || find_string(solver_names(p), name) >= 0;
+    const kernel_names own = pass_names_of(p), solver = solver_names(p);
+    return words_find(own.items, own.count, name) >= 0 ||
+           words_find(solver.items, solver.count, name) >= 0;
 }
 
 static int find_texture(const pass *p, const char *name) {
@@ -132,7 +129,7 @@ static bool find_provided(const char *name, slot_source *out) {
     size_t count;
     const pass_provider *const *rows = pass_providers(&count);
     for (size_t i = 0; i < count; i++) {
-        const int slot = find_string(rows[i]->slots, name);
+        const int slot = words_find(rows[i]->slots.items, rows[i]->slots.count, name);
         if (slot < 0) continue;
         *out = (slot_source){FROM_PROVIDER, (int16_t)slot, (int16_t)i};
         return true;

@@ -2,6 +2,7 @@
 // declarations, so that built-in passes and a user's shader behave alike.
 #include "base/error.h"
 #include "base/memory.h"
+#include "base/words.h"
 #include "pass/pass_impl.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -115,15 +116,7 @@ static bool unknown(const pass *p, const char *what, const char *name) {
     const char **names = mem_alloc((pass_most_keys(p) + 1) * sizeof *names);
     size_t count = pass_list_keys(p, names);
     names[count++] = "resolution";
-    const char *near = str_nearest(name, names, count);
-    if (near) {
-        err_set("%s: unknown %s '%s'; did you mean '%s'?", p->label, what, name, near);
-    } else {
-        strbuf list = {0};
-        for (size_t i = 0; i < count; i++) strbuf_add(&list, "%s%s", i ? ", " : "", names[i]);
-        err_set("%s: unknown %s '%s'; accepted: %s", p->label, what, name, strbuf_text(&list));
-        strbuf_free(&list);
-    }
+    words_refuse(names, count, name, NULL, "%s: unknown %s '%s'", p->label, what, name);
     mem_free(names);
     return false;
 }

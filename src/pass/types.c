@@ -1,6 +1,7 @@
 // The built-in pass types. A type without hooks is its shader and nothing else.
 #include "base/error.h"
 #include "base/memory.h"
+#include "base/words.h"
 #include "pass/pass_impl.h"
 #include <string.h>
 
@@ -142,10 +143,7 @@ const pass_type *pass_type_find(const char *name) {
         if (strcmp(types[i]->name, name) == 0) return types[i];
         names[i] = types[i]->name;
     }
-    const char *near = str_nearest(name, names, COUNT_OF(types));
-    if (near)
-        err_set("unknown pass '%s'; did you mean '%s'?", name, near);
-    else
-        err_set("unknown pass '%s'; `roil info passes` lists them", name);
+    words_refuse(names, COUNT_OF(types), name, "`roil info passes` lists them", "unknown pass '%s'",
+                 name);
     return NULL;
 }

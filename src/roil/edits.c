@@ -3,6 +3,7 @@
 // (script/source.h). All else in a file stays as it is.
 #include "base/error.h"
 #include "base/memory.h"
+#include "base/words.h"
 #include "roil/edits_impl.h"
 #include <math.h>
 #include <stdlib.h>
@@ -380,8 +381,7 @@ void edits_add_control(roil_edits *x, roil_effect *e, const effect_control *c) {
 // Distance, yaw and pitch of an orbit that an eye was set for are not where it stands.
 static bool is_overruled(roil_effect *e, const effect_control *c) {
     static const char *const parts[] = {"camera.distance", "camera.yaw", "camera.pitch"};
-    bool part = false;
-    for (size_t i = 0; i < COUNT_OF(parts); i++) part = part || strcmp(c->name, parts[i]) == 0;
+    const bool part = words_find(parts, COUNT_OF(parts), c->name) >= 0;
     const effect_control *eye = part ? effect_find_control(e->effect, "camera.eye") : NULL;
     return eye && eye->moved;
 }

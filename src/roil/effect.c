@@ -1,7 +1,7 @@
 // libroil: effects, from loading to frames and what is known of them.
 #include "base/error.h"
 #include "base/memory.h"
-#include "base/str.h"
+#include "base/words.h"
 #include "effect/events.h"
 #include "roil.h"
 #include "roil/roil_impl.h"
@@ -111,11 +111,8 @@ static void suggest_image(roil_effect *e, const char *name) {
     graph_images(g, handles, images);
     for (size_t i = 0; i < passes; i++) names[i] = pass_label(effect_get_pass(e->effect, i));
     for (size_t i = 0; i < images; i++) names[passes + i] = graph_get_desc(g, handles[i])->name;
-    const char *near = str_nearest(name, names, passes + images);
-    if (near)
-        err_set("no image '%s'; did you mean '%s'?", name, near);
-    else
-        err_set("no image '%s'; `roil info graph` shows them", name);
+    words_refuse(names, passes + images, name, "`roil info graph` shows them", "no image '%s'",
+                 name);
     mem_free(handles);
     mem_free(names);
 }

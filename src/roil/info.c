@@ -2,6 +2,7 @@
 #include "roil/info.h"
 #include "base/error.h"
 #include "base/memory.h"
+#include "base/words.h"
 #include "media/vdb.h"
 #include <math.h>
 #include <string.h>
@@ -235,11 +236,8 @@ static char *refuse_field(const char *name) {
         names[count++] = object->name;
     for (const field_kind *kind = field_kinds; kind->name && count < COUNT_OF(names); kind++)
         if (script_has_kind(kind)) names[count++] = kind->name;
-    const char *near = str_nearest(name, names, count);
-    if (near)
-        err_set("unknown field '%.64s'; did you mean '%s'?", name, near);
-    else
-        err_set("unknown field '%.64s'; `roil info fields` lists them", name);
+    words_refuse(names, count, name, "`roil info fields` lists them", "unknown field '%.64s'",
+                 name);
     return NULL;
 }
 

@@ -1,6 +1,7 @@
 // Prints controls as Lua, for "Copy as Lua" and for presets.
 #include "base/memory.h"
 #include "base/value.h"
+#include "base/words.h"
 #include "roil/roil_impl.h"
 #include <ctype.h>
 #include <math.h>
@@ -108,8 +109,7 @@ void roil_add_lua_key(const char *name, strbuf *out) {
         "function", "goto",   "if",   "in",   "local",  "nil",   "not",   "or",
         "repeat",   "return", "then", "true", "until",  "while",
     };
-    bool plain = str_is_identifier(name);
-    for (size_t i = 0; i < COUNT_OF(words); i++) plain = plain && strcmp(words[i], name) != 0;
+    bool plain = str_is_identifier(name) && words_find(words, COUNT_OF(words), name) < 0;
     strbuf_add(out, plain ? "%s = " : "[\"%s\"] = ", name);
 }
 

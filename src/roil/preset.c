@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/memory.h"
+#include "base/words.h"
 #include "roil/roil_impl.h"
 #include <ctype.h>
 #include <string.h>
@@ -69,19 +70,16 @@ static void refuse_preset(const char *effect_file, const char *name) {
     size_t count = roil_presets(effect_file, names, MOST);
     if (count > MOST) count = MOST;
     for (size_t i = 0; i < count; i++) known[i] = names[i];
-    const char *near = str_nearest(name, known, count);
-    if (near) {
-        err_set("%s has no preset '%.64s'; did you mean '%s'?", effect_file, name, near);
-    } else {
-        strbuf list = {0};
-        for (size_t i = 0; i < count; i++) strbuf_add(&list, "%s%s", i ? ", " : "", known[i]);
-        if (count)
-            err_set("%s has no preset '%.64s'; it has %s", effect_file, name, strbuf_text(&list));
-        else
-            err_set("%s has no presets, so no '%.64s'; a .lua file of settings can be named, too",
-                    effect_file, name);
-        strbuf_free(&list);
-    }
+    strbuf list = {0};
+    strbuf_add(&list, "it has ");
+    words_print(known, count, &list);
+    if (count)
+        words_refuse(known, count, name, strbuf_text(&list), "%s has no preset '%.64s'",
+                     effect_file, name);
+    else
+        err_set("%s has no presets, so no '%.64s'; a .lua file of settings can be named, too",
+                effect_file, name);
+    strbuf_free(&list);
     mem_free(names);
 }
 

@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/json_text.h"
 #include "base/memory.h"
+#include "base/words.h"
 #include "media/optical_flow.h"
 #include <math.h>
 #include <string.h>
@@ -60,10 +61,7 @@ static bool want(wish *w, const char *name) {
     default:
         break;
     }
-    const char *near = str_nearest(name, names, COUNT_OF(names));
-    return near ? err_set("map '%s'; did you mean '%s'?", name, near)
-                : err_set("map '%s'; accepted: color, motion, six-way, normal, depth, temperature",
-                          name);
+    return words_refuse(names, COUNT_OF(names), name, NULL, "map '%s'", name);
 }
 
 static bool want_all(wish *w, const roil_sheet_desc *desc) {

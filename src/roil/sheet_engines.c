@@ -7,6 +7,7 @@
 // uv from the top, and Unreal reads normals as DirectX does.
 #include "base/error.h"
 #include "base/memory.h"
+#include "base/words.h"
 #include "roil/sheet.h"
 #include <string.h>
 
@@ -73,10 +74,6 @@ const sheet_engine *sheet_find_engine(const char *name) {
         if (strcmp(engines[i].name, name) == 0) return &engines[i];
         names[count++] = engines[i].name;
     }
-    const char *near = str_nearest(name, names, count);
-    if (near)
-        err_set("engine '%s'; did you mean '%s'?", name, near);
-    else
-        err_set("engine '%s'; accepted: unity, unreal, godot, labs", name);
+    words_refuse(names, count, name, NULL, "engine '%s'", name);
     return NULL;
 }

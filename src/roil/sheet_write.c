@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/words.h"
 #include "media/exr.h"
 #include "media/png.h"
 #include "media/tga.h"
@@ -369,8 +370,8 @@ static bool find_area(roil_sheet *s, bool crop) {
 static const char *format_of(const char *file, const char *asked) {
     const char *format = asked ? asked : path_extension(file);
     static const char *const names[] = {"png", "png16", "exr", "tga"};
-    for (size_t i = 0; i < COUNT_OF(names); i++)
-        if (strcmp(names[i], format) == 0) return names[i];
+    int found = words_find(names, COUNT_OF(names), format);
+    if (found >= 0) return names[found];
     if (asked)
         err_set("format '%s'; accepted: png, png16, exr, tga", asked);
     else

@@ -6,7 +6,7 @@
 #include "base/file.h"
 #include "base/maths.h"
 #include "base/memory.h"
-#include "base/str.h"
+#include "base/words.h"
 #include "pass/slices/slices.h"
 #include "pass/slices/slices_templates.h"
 #include "roil_slices.h"
@@ -38,9 +38,9 @@ static bool is_name(const char *text, size_t length) {
 // to another folder.
 static bool is_file(const char *file) {
     size_t length = strlen(file);
-    for (size_t i = 0; i < COUNT_OF(kinds) && length < sizeof((roil_template *)NULL)->file; i++)
-        if (strcmp(path_extension(file), kinds[i]) == 0 && is_name(file, length - 4)) return true;
-    return false;
+    return length < sizeof((roil_template *)NULL)->file &&
+           words_find(kinds, COUNT_OF(kinds), path_extension(file)) >= 0 &&
+           is_name(file, length - 4);
 }
 
 static bool library_root(const roil_effect *e, char out[PATH_CAP]) {

@@ -1,5 +1,6 @@
 // Sweeps: the functions of their files, axis { }, zip { } and sweep { }, and reading a file.
 #include "base/memory.h"
+#include "base/words.h"
 #include "script/binding.h"
 #include "script/sweep_parts.h"
 #include <stdlib.h>
@@ -109,12 +110,9 @@ static void check_keys(lua_State *L) {
         vm_error(L, "sweep: a value has no name; axes stand in axes = { axis { ... } }");
     size_t count;
     const char **names = value_names(L, 1, "sweep", &count);
-    for (size_t i = 0; i < count; i++) {
-        bool known = false;
-        for (size_t k = 0; k < COUNT_OF(sweep_keys); k++)
-            known = known || strcmp(names[i], sweep_keys[k]) == 0;
-        if (!known) value_unknown(L, "sweep", "key", names[i], sweep_keys, COUNT_OF(sweep_keys));
-    }
+    for (size_t i = 0; i < count; i++)
+        if (words_find(sweep_keys, COUNT_OF(sweep_keys), names[i]) < 0)
+            value_unknown(L, "sweep", "key", names[i], sweep_keys, COUNT_OF(sweep_keys));
     lua_pop(L, 1);
 }
 
@@ -143,8 +141,8 @@ static void read_notes(lua_State *L, sweep *s) {
 static sweep_measure read_measure(lua_State *L) {
     static const char *const words[] = {"frames", "reload", "start"};
     const char *word = get_text(L, "measure", words[0]);
-    for (size_t i = 0; i < COUNT_OF(words); i++)
-        if (strcmp(word, words[i]) == 0) return (sweep_measure)i;
+    int found = words_find(words, COUNT_OF(words), word);
+    if (found >= 0) return (sweep_measure)found;
     value_unknown(L, "sweep", "value of 'measure'", word, words, COUNT_OF(words));
 }
 

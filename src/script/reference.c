@@ -1,6 +1,7 @@
 // The table of constructors: values, operators and the effect. field/kinds.c describes kinds of
 // fields.
 #include "base/memory.h"
+#include "base/words.h"
 #include "script/reference_rows.h"
 #include <string.h>
 
@@ -205,7 +206,6 @@ const value_desc *script_object_key(const script_object *object, size_t index) {
 
 bool script_has_kind(const field_kind *kind) {
     static const char *const nameless[] = {"constant", "call", "grid", "swizzle"};
-    for (size_t i = 0; i < COUNT_OF(nameless); i++)
-        if (strcmp(nameless[i], kind->name) == 0) return false;
-    return !script_object_find(kind->name);
+    return words_find(nameless, COUNT_OF(nameless), kind->name) < 0 &&
+           !script_object_find(kind->name);
 }

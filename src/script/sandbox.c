@@ -5,7 +5,7 @@
 // What is left and loops in C: script/library.c.
 #include "base/log.h"
 #include "base/memory.h"
-#include "base/str.h"
+#include "base/words.h"
 #include "script/vm.h"
 #include <lualib.h>
 #include <math.h>
@@ -201,10 +201,9 @@ static const struct {
 static int l_unknown_global(lua_State *L) {
     if (lua_type(L, 2) != LUA_TSTRING) vm_error(L, "globals are named by strings");
     const char *name = lua_tostring(L, 2);
-    for (size_t i = 0; i < COUNT_OF(withheld); i++)
-        if (strcmp(withheld[i], name) == 0)
-            vm_error(L, "'%s' is not available in effects: they cannot reach files or the system",
-                     name);
+    if (words_find(withheld, COUNT_OF(withheld), name) >= 0)
+        vm_error(L, "'%s' is not available in effects: they cannot reach files or the system",
+                 name);
     for (size_t i = 0; i < COUNT_OF(elsewhere); i++)
         if (strcmp(elsewhere[i].name, name) == 0)
             vm_error(L, "unknown name '%s': %s", name, elsewhere[i].hint);

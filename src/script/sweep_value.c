@@ -1,6 +1,7 @@
 // Sweeps: reads what the values of a file set in rows.
 #include "base/frames.h"
 #include "base/memory.h"
+#include "base/words.h"
 #include "script/binding.h"
 #include "script/setting.h"
 #include "script/sweep_parts.h"
@@ -17,9 +18,7 @@ static const char *const special_keys[] = {"effect",  "size",  "frames", "time",
                                            "repeats", "limit", "edit",   "command", "cache"};
 
 bool sweep_is_special(const char *key) {
-    for (size_t i = 0; i < COUNT_OF(special_keys); i++)
-        if (strcmp(key, special_keys[i]) == 0) return true;
-    return false;
+    return words_find(special_keys, COUNT_OF(special_keys), key) >= 0;
 }
 
 sweep_patch sweep_patch_empty(void) {
@@ -74,8 +73,8 @@ const char *sweep_take_text(lua_State *L, const char *who, const char *key) {
 static int take_word(lua_State *L, const char *who, const char *key, const char *const *words,
                      size_t count) {
     const char *word = sweep_take_text(L, who, key);
-    for (size_t i = 0; i < count; i++)
-        if (strcmp(word, words[i]) == 0) return (int)i;
+    int found = words_find(words, count, word);
+    if (found >= 0) return found;
     value_unknown(L, who, lua_pushfstring(L, "value of '%s'", key), word, words, count);
 }
 

@@ -2,6 +2,7 @@
 // accepted, and the message says which.
 #include "base/value.h"
 #include "base/memory.h"
+#include "base/words.h"
 #include "script/binding.h"
 #include <assert.h>
 #include <math.h>
@@ -37,8 +38,8 @@ const char *object_kind(lua_State *L, int index) {
     bool ours =
         lua_type(L, index) == LUA_TUSERDATA && luaL_getmetafield(L, index, "__name") == LUA_TSTRING;
     const char *name = ours ? lua_tostring(L, -1) : luaL_typename(L, index);
-    for (size_t i = 0; i < COUNT_OF(bare); i++)
-        if (strcmp(name, bare[i]) == 0) return bare[i];
+    const int place = words_find(bare, COUNT_OF(bare), name);
+    if (place >= 0) return bare[place];
     return lua_pushfstring(L, "%s %s", strchr("aeio", name[0]) ? "an" : "a", name);
 }
 
@@ -73,17 +74,8 @@ bool value_has_names(lua_State *L, int index) {
 
 void value_unknown(lua_State *L, const char *who, const char *what, const char *name,
                    const char *const *known, size_t count) {
-    const char *nearest = str_nearest(name, known, count);
-    if (nearest)
-        vm_error(L, "%s: unknown %s '%.64s'; did you mean '%s'?", who, what, name, nearest);
-    luaL_Buffer list;
-    luaL_buffinit(L, &list);
-    for (size_t i = 0; i < count; i++) {
-        if (i > 0) luaL_addstring(&list, ", ");
-        luaL_addstring(&list, known[i]);
-    }
-    luaL_pushresult(&list);
-    vm_error(L, "%s: unknown %s '%.64s'; accepted: %s", who, what, name, lua_tostring(L, -1));
+    words_refuse(known, count, name, NULL, "%s: unknown %s '%.64s'", who, what, name);
+    script_raise(L);
 }
 
 static int by_name(const void *a, const void *b) {
@@ -127,12 +119,6 @@ const char **value_names(lua_State *L, int table, const char *who, size_t *count
     return names;
 }
 
-static bool is_known(const char *name, const char *const *known, size_t count) {
-    for (size_t i = 0; i < count; i++)
-        if (strcmp(known[i], name) == 0) return true;
-    return false;
-}
-
 void value_check_keys(lua_State *L, int table, const char *who, const char *const *known,
                       size_t count) {
     if (!value_is_plain_table(L, table))
@@ -140,7 +126,8 @@ void value_check_keys(lua_State *L, int table, const char *who, const char *cons
     size_t n;
     const char **names = value_names(L, table, who, &n);
     for (size_t i = 0; i < n; i++)
-        if (!is_known(names[i], known, count)) value_unknown(L, who, "key", names[i], known, count);
+        if (words_find(known, count, names[i]) < 0)
+            value_unknown(L, who, "key", names[i], known, count);
     lua_pop(L, 1);
 }
 
@@ -264,8 +251,8 @@ int value_word(lua_State *L, int index, const char *who, const char *key, const 
                size_t count) {
     if (lua_type(L, index) != LUA_TSTRING) wrong(L, index, who, key, "a word in quotes");
     const char *word = lua_tostring(L, index);
-    for (size_t i = 0; i < count; i++)
-        if (strcmp(words[i], word) == 0) return (int)i;
+    int found = words_find(words, count, word);
+    if (found >= 0) return found;
     const char *what = lua_pushfstring(L, "value of '%s'", key);
     value_unknown(L, who, what, word, words, count);
 }

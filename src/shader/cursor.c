@@ -1,5 +1,5 @@
 // The tokens of annotations: numbers, words, lists, ranges, units, help.
-#include "base/str.h"
+#include "base/words.h"
 #include "shader/annotate.h"
 #include <ctype.h>
 #include <math.h>
@@ -111,8 +111,7 @@ bool cursor_unit(cursor *c, const char **out) {
 }
 
 static bool add_word(cursor *c, const char **words, size_t *count, const char *word) {
-    for (size_t i = 0; i < *count; i++)
-        if (strcmp(words[i], word) == 0) return cursor_fail(c, "\"%s\" is given twice", word);
+    if (words_find(words, *count, word) >= 0) return cursor_fail(c, "\"%s\" is given twice", word);
     if (*count == MAX_WORDS) return cursor_fail(c, "more than %d words", MAX_WORDS);
     words[(*count)++] = arena_string(c->memory, word);
     return true;

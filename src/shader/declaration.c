@@ -1,5 +1,6 @@
 // Parses the line of GLSL before an annotation: `layout(...) qualifiers uniform|out TYPE
 // NAME[..];`. It understands only what annotations need; the compiler checks the rest.
+#include "base/words.h"
 #include "shader/annotate.h"
 #include <ctype.h>
 #include <string.h>
@@ -37,9 +38,7 @@ static bool is_qualifier(const char *symbol) {
     static const char *const known[] = {"readonly", "writeonly", "restrict", "coherent",
                                         "volatile", "highp",     "mediump",  "lowp",
                                         "flat",     "smooth",    "centroid"};
-    for (size_t i = 0; i < sizeof known / sizeof *known; i++)
-        if (strcmp(symbol, known[i]) == 0) return true;
-    return false;
+    return words_find(known, sizeof known / sizeof *known, symbol) >= 0;
 }
 
 bool declaration_read(const cursor *c, const char *code, declaration *out) {

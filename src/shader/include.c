@@ -13,6 +13,7 @@
 // carriage returns, and no directive whose name is not complete on its line.
 #include "base/file.h"
 #include "base/memory.h"
+#include "base/words.h"
 #include "shader/unit.h"
 #include <ctype.h>
 #include <string.h>
@@ -250,9 +251,8 @@ static bool is_known(const char *name, const char *rest) {
     static const char *const known[] = {"define", "undef",   "if",       "ifdef", "ifndef",
                                         "else",   "elif",    "endif",    "error", "pragma",
                                         "line",   "version", "extension"};
-    for (size_t i = 0; i < COUNT_OF(known); i++)
-        if (strcmp(name, known[i]) == 0) return true;
-    return !name[0] && !rest[strspn(rest, BLANKS)]; // a lone # means nothing
+    return words_find(known, COUNT_OF(known), name) >= 0 ||
+           (!name[0] && !rest[strspn(rest, BLANKS)]); // a lone # means nothing
 }
 
 static bool add_source_line(loader *l, place at, const char *line, size_t length, bool *in_comment,

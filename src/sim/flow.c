@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/memory.h"
 #include "base/swap.h"
+#include "base/words.h"
 #include "sim/flow_impl.h"
 #include <string.h>
 
@@ -268,10 +269,9 @@ static void list_own(const flow *f, gpu_buffer *out[FLOW_OWN]) {
 
 gpu_buffer *flow_find(const flow *f, const char *name) {
     gpu_buffer *own[FLOW_OWN];
+    int index = words_find(names, FLOW_OWN, name);
     list_own(f, own);
-    for (int i = 0; i < FLOW_OWN; i++)
-        if (strcmp(names[i], name) == 0) return own[i];
-    return NULL;
+    return index < 0 ? NULL : own[index];
 }
 
 void flow_bind(const flow *f, kernel *k, const kernel_place *places) {

@@ -4,6 +4,7 @@
 #include "pass/grids/voxels.h"
 #include "base/error.h"
 #include "base/memory.h"
+#include "base/words.h"
 #include "pass/pass_impl.h"
 #include "scene/voxels.h"
 #include <math.h>
@@ -51,11 +52,8 @@ static int find_field(field_grid *grid, const char *name, int *components) {
         *components = fields[i].components;
         return fields[i].channel;
     }
-    const char *near = str_nearest(name, all, COUNT_OF(fields));
-    if (near)
-        err_set("%s: no field '%s'; did you mean '%s'?", grid->name, name, near);
-    else
-        err_set("%s: no field '%s'; it has inside, distance and velocity", grid->name, name);
+    words_refuse(all, COUNT_OF(fields), name, "it has inside, distance and velocity",
+                 "%s: no field '%s'", grid->name, name);
     return -1;
 }
 
