@@ -140,9 +140,8 @@ static void choose(flow *f, const gpu_profile *device) {
     if (f->chooses_iterations) flow_choose_iterations(f);
 }
 
-static bool flow_compile_kernels(flow *f, const gpu_profile *device, shader_library *library,
-                                 const shader_reader *reader) {
-    choose(f, device);
+bool flow_build(flow *f, gpu *g, shader_library *library, const shader_reader *reader) {
+    choose(f, gpu_get_profile(g));
     define_all(f);
     for (int i = 0; i < FLOW_KERNELS; i++) {
         shader_define defines[FLOW_MAX_DEFINES + 1];
@@ -153,16 +152,10 @@ static bool flow_compile_kernels(flow *f, const gpu_profile *device, shader_libr
         const shader_compile_desc shader = {
             .name = shaders[i], .defines = defines, .define_count = count, .reader = reader};
         if (!kernel_compile_compute(&f->kernels[i], library, f->memory, &shader,
-                                    flow_kernel_table.names))
+                                    flow_kernel_table.names) ||
+            (g && !kernel_build(&f->kernels[i], g)))
             return false;
     }
-    return true;
-}
-
-bool flow_build(flow *f, gpu *g, shader_library *library, const shader_reader *reader) {
-    if (!flow_compile_kernels(f, gpu_get_profile(g), library, reader)) return false;
-    for (int i = 0; g && i < FLOW_KERNELS; i++)
-        if (f->kernels[i].stages && !kernel_build(&f->kernels[i], g)) return false;
     return true;
 }
 

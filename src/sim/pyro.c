@@ -198,8 +198,8 @@ static bool is_used(const pyro_desc *desc, pyro_kernel which) {
     return true;
 }
 
-static bool pyro_compile_kernels(pyro *p, const gpu_profile *device, shader_library *library,
-                                 const shader_reader *reader) {
+bool pyro_build(pyro *p, gpu *g, shader_library *library, const shader_reader *reader) {
+    const gpu_profile *device = gpu_get_profile(g);
     if (p->chooses_precision) p->desc.precision = device->pyro_half ? PYRO_F16 : PYRO_F32;
     p->side_by_side = device->pyro_side_by_side;
     p->wide = device->pyro_wide_words && p->desc.precision == PYRO_F32;
@@ -213,16 +213,10 @@ static bool pyro_compile_kernels(pyro *p, const gpu_profile *device, shader_libr
         const shader_compile_desc shader = {
             .name = shaders[i], .defines = defines, .define_count = count, .reader = reader};
         if (!kernel_compile_compute(&p->kernels[i], library, p->memory, &shader,
-                                    pyro_kernel_table.names))
+                                    pyro_kernel_table.names) ||
+            (g && !kernel_build(&p->kernels[i], g)))
             return false;
     }
-    return true;
-}
-
-bool pyro_build(pyro *p, gpu *g, shader_library *library, const shader_reader *reader) {
-    if (!pyro_compile_kernels(p, gpu_get_profile(g), library, reader)) return false;
-    for (int i = 0; g && i < PYRO_KERNELS; i++)
-        if (p->kernels[i].stages && !kernel_build(&p->kernels[i], g)) return false;
     return true;
 }
 
