@@ -1,6 +1,7 @@
 #include "base/budget.h"
 #include "base/memory.h"
 #include "base/str.h"
+#include "base/swap.h"
 #include <math.h>
 #include <pthread.h>
 #include <stdio.h>
@@ -180,9 +181,7 @@ static uint64_t plus(uint64_t a, uint64_t b) { // at most the largest number
 static void put_in_order(budget_row largest[BUDGET_LARGEST], budget_row row) {
     for (size_t i = 0; i < BUDGET_LARGEST; i++) {
         if (row.bytes <= largest[i].bytes) continue;
-        budget_row next = largest[i];
-        largest[i] = row;
-        row = next;
+        SWAP(largest[i], row);
     }
 }
 

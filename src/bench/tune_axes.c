@@ -1,6 +1,7 @@
 // Chooses the controls that affect an effect's quality, and values to try.
 #include "base/error.h"
 #include "base/memory.h"
+#include "base/swap.h"
 #include "base/words.h"
 #include "bench/tune.h"
 #include <math.h>
@@ -126,9 +127,7 @@ static void take_words(const roil_control *c, truth t, tune_axis *out) {
 }
 
 static void axis_swap(tune_axis *a, size_t i, size_t k) {
-    const char *text = a->values[i];
-    a->values[i] = a->values[k];
-    a->values[k] = text;
+    SWAP(a->values[i], a->values[k]);
     a->start = a->start == i ? k : a->start == k ? i : a->start;
 }
 

@@ -1,6 +1,7 @@
 // From one load of an effect to the next: what shows the same files in the same way changes hands,
 // with its textures and the thread that decodes ahead.
 #include "base/memory.h"
+#include "base/swap.h"
 #include "field/sequence_parts.h"
 #include <string.h>
 
@@ -64,12 +65,8 @@ static void swap_timeline(sequence_desc *a, sequence_desc *b) {
 bool sequence_exchange(field_grid *grid, field_grid *other) {
     sequence *a = (sequence *)grid, *b = (sequence *)other;
     if (!same_content(a->data, b->data)) return false;
-    sequence_data *data = a->data;
-    a->data = b->data;
-    b->data = data;
+    SWAP(a->data, b->data);
     swap_timeline(&a->data->desc, &b->data->desc); // stays with its effect
-    field_grid_state state = grid->state;
-    grid->state = other->state;
-    other->state = state;
+    SWAP(grid->state, other->state);
     return true;
 }

@@ -2,6 +2,7 @@
 //
 // The two images behind an image with history are swapped before the first pass. Between two
 // executions the handles therefore show the frame that was just made and the one before it.
+#include "base/swap.h"
 #include "graph/internal.h"
 #include <assert.h>
 
@@ -9,9 +10,7 @@ static void turn_history(graph *g, gpu *device, const graph_node_image *image) {
     static const float zero[4] = {0};
     graph_slot *now = &g->slots.at[image->slot];
     graph_slot *past = &g->slots.at[g->images[image->history].slot];
-    gpu_image *memory = now->memory;
-    now->memory = past->memory;
-    past->memory = memory;
+    SWAP(now->memory, past->memory);
     if (!now->fresh && !past->fresh) return;
     gpu_image_clear(device, now->memory, zero);
     gpu_image_clear(device, past->memory, zero);

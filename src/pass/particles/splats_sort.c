@@ -1,4 +1,5 @@
 // Pairs of a key and a splat, sorted on the device: by as many digits as tiles and depth need.
+#include "base/swap.h"
 #include "pass/particles/splats_parts.h"
 
 enum {
@@ -57,9 +58,7 @@ bool splats_sort(pass *p) {
             !sort_run(p, SPLATS_SORT_SCAN, threads) ||
             !sort_run(p, SPLATS_SORT_MOVE, threads * block_count(p)))
             return false;
-        gpu_buffer *sorted = s->buffers[SPLATS_SORTED];
-        s->buffers[SPLATS_SORTED] = s->buffers[SPLATS_PAIRS];
-        s->buffers[SPLATS_PAIRS] = sorted;
+        SWAP(s->buffers[SPLATS_SORTED], s->buffers[SPLATS_PAIRS]);
     }
     return true;
 }
