@@ -82,28 +82,59 @@ bool gpu_buffer_copy(gpu *g, gpu_buffer *from, gpu_buffer *to, uint64_t size) {
     return size == 0 || copy_bytes(g, from, 0, to, size);
 }
 
-bool gpu_image_copy(gpu *g, gpu_image *from, gpu_image *to) {
+static bool check_copy(const gpu_image *from, const gpu_image *to) {
     VkExtent3D extent, other;
     uint64_t bytes;
     vk_image_extent(from, 0, &extent, &bytes);
     vk_image_extent(to, 0, &other, &bytes);
-    if (from == to || from->desc.format != to->desc.format ||
-        memcmp(&extent, &other, sizeof extent) != 0) {
-        return err_set("image '%s' cannot be copied to '%s'; another image of its format and size "
-                       "is accepted",
-                       from->desc.label, to->desc.label);
-    }
+    return (from != to && from->desc.format == to->desc.format &&
+            memcmp(&extent, &other, sizeof extent) == 0) ||
+           err_set("image '%s' cannot be copied to '%s'; another image of its format and size is "
+                   "accepted",
+                   from->desc.label, to->desc.label);
+}
+
+static bool copy_regions(gpu *g, gpu_image *from, gpu_image *to, VkImageCopy *regions,
+                         uint32_t count) {
     VkCommandBuffer commands = vk_commands(g);
     if (!commands) return false;
     vk_uses_begin(g);
     vk_use_image(g, from, 0, 1, vk_image_from);
     vk_use_image(g, to, 0, 1, vk_image_to);
     vk_uses_flush(g, commands);
-    VkImageSubresourceLayers layers = {.aspectMask = from->aspect, .layerCount = 1};
-    VkImageCopy region = {.srcSubresource = layers, .dstSubresource = layers, .extent = extent};
+    for (uint32_t i = 0; i < count; i++)
+        regions[i].srcSubresource = regions[i].dstSubresource =
+            (VkImageSubresourceLayers){.aspectMask = from->aspect, .layerCount = 1};
     g->vk.CmdCopyImage(commands, from->handle, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to->handle,
-                       VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
+                       VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, count, regions);
     return true;
+}
+
+bool gpu_image_copy(gpu *g, gpu_image *from, gpu_image *to) {
+    if (!check_copy(from, to)) return false;
+    VkImageCopy whole = {.extent = {0}};
+    uint64_t bytes;
+    vk_image_extent(from, 0, &whole.extent, &bytes);
+    return copy_regions(g, from, to, &whole, 1);
+}
+
+bool gpu_image_copy_areas(gpu *g, gpu_image *from, gpu_image *to, const gpu_area *areas,
+                          size_t count) {
+    VkImageCopy regions[GPU_MAX_AREAS] = {{.extent = {0}}};
+    if (!check_copy(from, to)) return false;
+    if (count > GPU_MAX_AREAS)
+        return err_set("%zu areas of image '%s'; at most %d are copied at once", count,
+                       from->desc.label, GPU_MAX_AREAS);
+    for (size_t i = 0; i < count; i++) {
+        const gpu_area *a = &areas[i];
+        const gpu_image_desc *size = &from->desc;
+        if (!a->width || !a->height || a->x > size->width || a->width > size->width - a->x ||
+            a->y > size->height || a->height > size->height - a->y)
+            return err_set("area %zu is not inside of image '%s'", i, from->desc.label);
+        regions[i].srcOffset = regions[i].dstOffset = (VkOffset3D){(int32_t)a->x, (int32_t)a->y, 0};
+        regions[i].extent = (VkExtent3D){a->width, a->height, size->depth ? size->depth : 1};
+    }
+    return !count || copy_regions(g, from, to, regions, (uint32_t)count);
 }
 
 // ---- reading back -----------------------------------------------------------------------------

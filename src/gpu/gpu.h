@@ -325,6 +325,11 @@ typedef struct gpu_dispatch_desc {
 } gpu_dispatch_desc;
 bool gpu_dispatch(gpu *g, const gpu_dispatch_desc *desc);
 
+enum { GPU_MAX_AREAS = 8 };
+typedef struct gpu_area { // of an image, pixels
+    uint32_t x, y, width, height;
+} gpu_area;
+
 // What the device reads where the numbers of a draw are left to it. `first_instance` is 0 where
 // gpu_limits.first_instance (profile.h) is false.
 typedef struct gpu_draw_command { // without indices
@@ -362,10 +367,11 @@ typedef struct gpu_draw_desc {
 bool gpu_draw_all(gpu *g, const gpu_draw_desc *desc);
 
 // Inside a frame, once: shows the image (mip 0, 2D, encoded for display) in the window, scaled to
-// it, when the frame is done. Waits for the display's turn. A window without an area (minimised),
-// and one whose surface is being replaced, is passed over. False when the device or surface is
-// lost.
-bool gpu_present(gpu *g, gpu_image *image);
+// it, when the frame is done. Outside of `changed` it is the image that was shown last, as it was
+// then; NULL: nothing is known of that. Waits for the display's turn. A window without an area
+// (minimised), and one whose surface is being replaced, is passed over. False when the device or
+// surface is lost.
+bool gpu_present(gpu *g, gpu_image *image, const gpu_area *changed, size_t count);
 
 // ---- images and semaphores of a host ----------------------------------------------------------
 
@@ -415,5 +421,8 @@ void gpu_buffer_fill(gpu *g, gpu_buffer *buffer, uint32_t word);      // inside 
 // Copies mip 0, tightly packed, to `offset` of the buffer.
 bool gpu_image_copy_to_buffer(gpu *g, gpu_image *image, gpu_buffer *buffer, uint64_t offset);
 bool gpu_buffer_copy(gpu *g, gpu_buffer *from, gpu_buffer *to, uint64_t size); // from the beginning
-// Copies mip 0 between two images of one format and size.
+// Copies mip 0 between two images of one format and size: all of it, or the areas, of which each
+// must lie inside.
 bool gpu_image_copy(gpu *g, gpu_image *from, gpu_image *to);
+bool gpu_image_copy_areas(gpu *g, gpu_image *from, gpu_image *to, const gpu_area *areas,
+                          size_t count);

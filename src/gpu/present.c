@@ -3,6 +3,9 @@
 // Two semaphores tie a frame to the display. `acquired` belongs to the frame's slot: the frame's
 // transfers wait for it, so it is free when the slot is used again. `drawn` belongs to the window's
 // image: the display waits for it, and has done so when it lends the same image again.
+//
+// Where the profile says so (keeps_shown), an image that is lent again still holds what was shown
+// in it, and only what has changed since is copied.
 #include "gpu/vk.h"
 
 // A window that lies hidden may lend no image for ever. The frame is then passed over.
@@ -51,33 +54,116 @@ static void relayout(const gpu *g, VkCommandBuffer commands, VkImage image, VkIm
     g->vk.CmdPipelineBarrier2(commands, &info);
 }
 
+static bool is_as_large(const gpu_image_desc *d, VkExtent2D size) {
+    return d->width == size.width && d->height == size.height;
+}
+
 // Texel by texel where the sizes are equal.
 static VkFilter filter_for(const gpu *g, const gpu_image_desc *d, VkExtent2D size) {
-    bool equal = d->width == size.width && d->height == size.height;
     bool smooth = g->format_features[d->format] & VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT;
-    return smooth && !equal ? VK_FILTER_LINEAR : VK_FILTER_NEAREST;
+    return smooth && !is_as_large(d, size) ? VK_FILTER_LINEAR : VK_FILTER_NEAREST;
+}
+
+static VkImageBlit whole_blit(const gpu_image_desc *d, VkExtent2D size) {
+    return (VkImageBlit){.srcOffsets = {{0}, {(int32_t)d->width, (int32_t)d->height, 1}},
+                         .dstOffsets = {{0}, {(int32_t)size.width, (int32_t)size.height, 1}}};
+}
+
+static VkImageBlit blit_of(gpu_area a) {
+    VkOffset3D from = {(int32_t)a.x, (int32_t)a.y, 0};
+    VkOffset3D to = {(int32_t)(a.x + a.width), (int32_t)(a.y + a.height), 1};
+    return (VkImageBlit){.srcOffsets = {from, to}, .dstOffsets = {from, to}};
+}
+
+// Returns how many blits it takes to fill an image of the window.
+static uint32_t list_blits(const gpu *g, const gpu_image_desc *d, VkImageBlit out[GPU_MAX_AREAS]) {
+    const vk_swapchain *chain = g->window.swapchain;
+    const vk_areas *missing = &chain->missing[g->window.image];
+    uint32_t count = missing->count;
+    out[0] = whole_blit(d, chain->size);
+    bool whole = !chain->kept[g->window.image] || !is_as_large(d, chain->size);
+    if (whole) count = 1;
+    for (uint32_t i = 0; i < count && !whole; i++) out[i] = blit_of(missing->list[i]);
+    for (uint32_t i = 0; i < count; i++)
+        out[i].srcSubresource = out[i].dstSubresource =
+            (VkImageSubresourceLayers){.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT, .layerCount = 1};
+    return count;
 }
 
 static void copy_scaled(gpu *g, VkCommandBuffer commands, gpu_image *image) {
-    const vk_swapchain *chain = g->window.swapchain;
-    const gpu_image_desc *d = &image->desc;
+    vk_swapchain *chain = g->window.swapchain;
     VkImage target = chain->images[g->window.image];
-    VkImageSubresourceLayers layers = {.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT, .layerCount = 1};
-    VkImageBlit region = {
-        .srcSubresource = layers,
-        .srcOffsets = {{0}, {(int32_t)d->width, (int32_t)d->height, 1}},
-        .dstSubresource = layers,
-        .dstOffsets = {{0}, {(int32_t)chain->size.width, (int32_t)chain->size.height, 1}}};
+    bool *kept = &chain->kept[g->window.image];
+    VkImageBlit blits[GPU_MAX_AREAS];
+    uint32_t count = list_blits(g, &image->desc, blits);
+    if (!count) return;
     vk_uses_begin(g);
     vk_use_image(g, image, 0, 1, vk_image_from);
     vk_uses_flush(g, commands);
-    relayout(g, commands, target, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-             false);
+    relayout(g, commands, target,
+             *kept ? VK_IMAGE_LAYOUT_PRESENT_SRC_KHR : VK_IMAGE_LAYOUT_UNDEFINED,
+             VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, false);
     g->vk.CmdBlitImage(commands, image->handle, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, target,
-                       VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region,
-                       filter_for(g, d, chain->size));
+                       VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, count, blits,
+                       filter_for(g, &image->desc, chain->size));
     relayout(g, commands, target, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
              VK_IMAGE_LAYOUT_PRESENT_SRC_KHR, true);
+    chain->missing[g->window.image].count = 0;
+    *kept = g->profile.keeps_shown;
+}
+
+// ---- what has changed -------------------------------------------------------------------------
+
+static gpu_area joined(gpu_area a, gpu_area b) {
+    uint32_t right = a.x + a.width > b.x + b.width ? a.x + a.width : b.x + b.width;
+    uint32_t bottom = a.y + a.height > b.y + b.height ? a.y + a.height : b.y + b.height;
+    uint32_t x = a.x < b.x ? a.x : b.x, y = a.y < b.y ? a.y : b.y;
+    return (gpu_area){x, y, right - x, bottom - y};
+}
+
+static uint64_t size_of(gpu_area a) {
+    return (uint64_t)a.width * a.height;
+}
+
+// Where there are too many, it is joined to the one that grows least.
+static void add_area(vk_areas *to, gpu_area a) {
+    uint32_t best = 0;
+    uint64_t least = UINT64_MAX;
+    for (uint32_t i = 0; i < to->count; i++) {
+        uint64_t more = size_of(joined(to->list[i], a)) - size_of(to->list[i]);
+        if (more >= least) continue;
+        least = more;
+        best = i;
+    }
+    if (least > 0 && to->count < GPU_MAX_AREAS)
+        to->list[to->count++] = a;
+    else
+        to->list[best] = joined(to->list[best], a);
+}
+
+// An image of another size than the window's is shown scaled, and always as a whole.
+static void note_changed(gpu *g, const gpu_image *image, const gpu_area *changed, size_t count) {
+    vk_swapchain *chain = g->window.swapchain;
+    if (!chain) return;
+    const gpu_area whole = {0, 0, chain->size.width, chain->size.height};
+    bool known = changed && is_as_large(&image->desc, chain->size);
+    for (uint32_t i = 0; i < chain->count; i++) {
+        vk_areas *missing = &chain->missing[i];
+        if (!known) *missing = (vk_areas){{whole}, 1};
+        for (size_t k = 0; known && k < count; k++) add_area(missing, changed[k]);
+    }
+}
+
+static bool check_changed(const gpu_image *image, const gpu_area *changed, size_t count) {
+    const gpu_image_desc *d = &image->desc;
+    for (size_t i = 0; changed && i < count; i++) {
+        const gpu_area *a = &changed[i];
+        if (!a->width || !a->height || a->x > d->width || a->width > d->width - a->x ||
+            a->y > d->height || a->height > d->height - a->y)
+            return err_set("image '%s' cannot be shown: what has changed lies outside of it",
+                           d->label);
+    }
+    return true;
 }
 
 static bool present_check(gpu *g, const gpu_image *image) {
@@ -101,8 +187,10 @@ static bool present_check(gpu *g, const gpu_image *image) {
     return true;
 }
 
-bool gpu_present(gpu *g, gpu_image *image) {
-    if (!present_check(g, image) || !vk_window_revive(g)) return false;
+bool gpu_present(gpu *g, gpu_image *image, const gpu_area *changed, size_t count) {
+    if (!present_check(g, image) || !check_changed(image, changed, count) || !vk_window_revive(g))
+        return false;
+    note_changed(g, image, changed, count); // also where the frame is passed over
     if (!g->window.surface) return true;
     VkResult result = obtain(g, (VkExtent2D){image->desc.width, image->desc.height});
     if (result == VK_NOT_READY) return true;

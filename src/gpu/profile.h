@@ -23,6 +23,7 @@ typedef struct gpu_profile {
     bool hides_uniforms;    // ... so that the driver cannot tell which uniforms are read (hide.c)
     bool slices_dispatches; // a dispatch goes in several (dispatch.c)
     bool waits_in_calls;    // calls that should only ask or hand over wait without a limit
+    bool keeps_shown;       // images of a window are filled only where they are to change
     bool shows_apart;       // a window is drawn by a device of its own beside the effects
     bool shares_memory;     // the device's memory is taken from the host's budget
     double timeout;         // seconds of work until the device counts as lost

@@ -127,7 +127,7 @@ static VkResult swapchain_create(gpu *g, const VkSurfaceCapabilitiesKHR *caps, V
                                      .preTransform = caps->currentTransform,
                                      .compositeAlpha = choose_alpha(caps),
                                      .presentMode = VK_PRESENT_MODE_FIFO_KHR,
-                                     .clipped = VK_TRUE,
+                                     .clipped = !g->profile.keeps_shown,
                                      .oldSwapchain = old ? old->handle : VK_NULL_HANDLE};
     vk_swapchain *chain = mem_alloc(sizeof *chain);
     chain->size = size;

@@ -351,12 +351,19 @@ void vk_copier_close(gpu *g); // the device is idle
 
 // ---- the window -------------------------------------------------------------------------------
 
+typedef struct vk_areas { // they may overlap
+    gpu_area list[GPU_MAX_AREAS];
+    uint32_t count;
+} vk_areas;
+
 typedef struct vk_swapchain {
     VkSwapchainKHR handle;
     VkExtent2D size;
     uint32_t count;
     VkImage images[VK_MAX_SHOWN];
     VkSemaphore drawn[VK_MAX_SHOWN]; // the frame that fills the image is done
+    vk_areas missing[VK_MAX_SHOWN];  // where an image does not show what it should
+    bool kept[VK_MAX_SHOWN];         // ... and elsewhere it shows that
     bool fitted;                     // the window took an image without complaint
     bool stale;                      // does not fit the window any more
 } vk_swapchain;

@@ -18,7 +18,8 @@ struct roil {
     bool counters, window, never_waits, interaction;
     bool stuck; // an abandoned thread still uses it (roil_live_destroy)
     uint32_t reference;
-    double seconds; // roil_desc.time_limit
+    uint64_t textures; // how often one was made or drawn into
+    double seconds;    // roil_desc.time_limit
     bool (*loading)(void *user, double done, double whole);
     void *user; // for `loading`
     view *view; // NULL until something is shown or inspected

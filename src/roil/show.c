@@ -4,6 +4,8 @@
 // Both are drawn into one canvas, encoded as sRGB, which is presented and can be read back. Tests
 // and screenshots therefore see what a display gets. Interfaces are blended in encoded space, which
 // is what designers of their colours expect.
+//
+// The canvas is kept, and only where it differs from the last picture (redraw.h) it is drawn anew.
 #include "base/error.h"
 #include "base/memory.h"
 #include "roil/view.h"
@@ -26,10 +28,11 @@ static bool make_image(roil *r, gpu_image **image, const char *label, uint32_t w
 
 // What lies below the interface is kept, for it changes more rarely.
 static bool make_canvas(roil *r, view *v, uint32_t width, uint32_t height) {
-    const gpu_image *before = v->below;
+    const gpu_image *below = v->below, *canvas = v->canvas;
     bool done = make_image(r, &v->below, "window, below", width, height, 0) &&
                 make_image(r, &v->canvas, "window", width, height, GPU_USE_TARGET);
-    if (v->below != before) v->picture = NULL;
+    if (v->below != below) v->picture = NULL;
+    if (v->below != below || v->canvas != canvas) redraw_forget(&v->redraw);
     return done;
 }
 
@@ -77,16 +80,26 @@ static compose_block block_of(const roil_picture *p, const shown *what) {
 
 static bool compose_picture(roil *r, view *v, const roil_picture *p, const shown *what) {
     compose_block block = block_of(p, what);
+    bool moved = memcmp(&block, &v->composed, sizeof block) != 0;
+    if (what->kept && v->picture == what->picture && v->other == what->other && !moved) return true;
+    v->composed = block;
+    v->made.ground += moved;
+    v->made.pictures++;
+    memcpy(v->made.places[0], block.place, sizeof block.place);
+    memcpy(v->made.places[1], block.beside, sizeof block.beside);
+    bool done = compose(r, v, p, what);
+    v->picture = what->kept && done ? what->picture : NULL;
+    v->other = what->other;
+    return done;
+}
+
+// Makes all that is to be drawn anew show what lies below the interface.
+static bool lay_ground(roil *r, view *v, const roil_picture *p, const shown *what) {
     gpu_pass_begin(r->shown, "window");
-    bool done = true;
-    if (!what->kept || v->picture != what->picture || v->other != what->other ||
-        memcmp(&block, &v->composed, sizeof block) != 0) {
-        v->composed = block;
-        done = compose(r, v, p, what);
-        v->picture = what->kept && done ? what->picture : NULL;
-        v->other = what->other;
-    }
-    done = done && gpu_image_copy(r->shown, v->below, v->canvas);
+    bool done = compose_picture(r, v, p, what);
+    redraw_find(&v->redraw, p, &v->made);
+    done = done && gpu_image_copy_areas(r->shown, v->below, v->canvas, v->redraw.areas,
+                                        v->redraw.area_count);
     gpu_pass_end(r->shown);
     return done;
 }
@@ -122,58 +135,43 @@ static bool reserve_buffer(roil *r, gpu_buffer **buffer, const char *label, size
 
 static bool upload_triangles(roil *r, view *v, const roil_picture *p) {
     size_t vertices = p->vertex_count * sizeof *p->vertices;
-    size_t indices = p->index_count * sizeof *p->indices;
+    size_t indices = v->redraw.index_count * sizeof *v->redraw.indices;
     return reserve_buffer(r, &v->vertices, "vertices of the window", vertices) &&
            reserve_buffer(r, &v->indices, "indices of the window", indices) &&
            gpu_buffer_write(r->shown, v->vertices, 0, p->vertices, vertices) &&
-           gpu_buffer_write(r->shown, v->indices, 0, p->indices, indices);
+           gpu_buffer_write(r->shown, v->indices, 0, v->redraw.indices, indices);
 }
 
-// Clips a rectangle to the canvas in whole pixels. False when nothing is left.
-static bool scissor(const roil_picture *p, const float clip[4], uint32_t out[4]) {
-    float right = fminf(rintf(clip[2]), (float)p->width), left = fmaxf(rintf(clip[0]), 0);
-    float bottom = fminf(rintf(clip[3]), (float)p->height), top = fmaxf(rintf(clip[1]), 0);
-    if (!(left < right && top < bottom)) return false;
-    out[0] = (uint32_t)left;
-    out[1] = (uint32_t)top;
-    out[2] = (uint32_t)(right - left);
-    out[3] = (uint32_t)(bottom - top);
-    return true;
-}
-
-static size_t make_draws(view *v, const roil_picture *p, const float size[4], gpu_draw *out,
-                         gpu_binding (*bindings)[GPU_MAX_SLOTS]) {
+static void make_draws(view *v, const roil_picture *p, const float size[4], gpu_draw *out,
+                       gpu_binding (*bindings)[GPU_MAX_SLOTS]) {
     kernel *k = &v->overlay;
-    size_t count = 0;
     kernel_bind(k, N_View, (gpu_binding){.uniform = size, .uniform_size = 4 * sizeof *size});
     kernel_bind_buffer(k, N_Vertices, v->vertices);
     kernel_bind_buffer(k, N_Indices, v->indices);
-    for (size_t i = 0; i < p->draw_count; i++) {
-        const roil_draw *d = &p->draws[i];
-        uint32_t area[4];
-        if (!d->count || !scissor(p, d->clip, area)) continue;
-        kernel_bind_image(k, N_image, d->texture ? d->texture->image : v->white);
-        gpu_draw *draw = &out[count];
-        *draw = kernel_draw(k, bindings[count++]);
-        draw->vertices = d->count;
-        draw->first_vertex = d->first;
-        memcpy(draw->scissor, area, sizeof area);
+    for (size_t i = 0; i < v->redraw.draw_count; i++) {
+        const redraw_draw *d = &v->redraw.draws[i];
+        const roil_texture *texture = p->draws[d->of].texture;
+        kernel_bind_image(k, N_image, texture ? texture->image : v->white);
+        out[i] = kernel_draw(k, bindings[i]);
+        out[i].vertices = d->count;
+        out[i].first_vertex = d->first;
+        memcpy(out[i].scissor, &d->area, sizeof d->area);
     }
-    return count;
 }
 
 static bool draw_overlay(roil *r, view *v, const roil_picture *p) {
-    if (!p->draw_count || !p->index_count) return true;
+    const size_t count = v->redraw.draw_count;
+    if (!count) return true;
     if (!upload_triangles(r, v, p)) return false;
     float size[4] = {(float)p->width, (float)p->height};
-    gpu_draw *draws = mem_alloc(p->draw_count * sizeof *draws);
-    gpu_binding(*bindings)[GPU_MAX_SLOTS] = mem_alloc(p->draw_count * sizeof *bindings);
-    size_t count = make_draws(v, p, size, draws, bindings);
+    gpu_draw *draws = mem_alloc(count * sizeof *draws);
+    gpu_binding(*bindings)[GPU_MAX_SLOTS] = mem_alloc(count * sizeof *bindings);
+    make_draws(v, p, size, draws, bindings);
     gpu_pass_begin(r->shown, "interface");
-    bool done = !count || gpu_draw_all(r->shown, &(gpu_draw_desc){.pipeline = v->overlay.pipeline,
-                                                                  .colors = {v->canvas},
-                                                                  .draws = draws,
-                                                                  .draw_count = count});
+    bool done = gpu_draw_all(r->shown, &(gpu_draw_desc){.pipeline = v->overlay.pipeline,
+                                                        .colors = {v->canvas},
+                                                        .draws = draws,
+                                                        .draw_count = count});
     gpu_pass_end(r->shown);
     mem_free(draws);
     mem_free(bindings);
@@ -206,6 +204,10 @@ static bool find_shown(roil *r, view *v, const roil_picture *p, shown *out) {
     return !gpu_is_lost(r->device);
 }
 
+static bool present(roil *r, const view *v) {
+    return !r->window || gpu_present(r->shown, v->canvas, v->redraw.areas, v->redraw.area_count);
+}
+
 bool roil_show(roil *r, const roil_picture *p) {
     mem_enter();
     if (p->width == 0 || p->height == 0) return mem_leave(true); // minimised
@@ -216,9 +218,9 @@ bool roil_show(roil *r, const roil_picture *p) {
         !view_make_overlay(r, &v->overlay) || !make_canvas(r, v, p->width, p->height) ||
         !find_shown(r, v, p, &what) || !gpu_frame_begin(r->shown))
         return mem_leave(false);
-    bool done = compose_picture(r, v, p, &what) && draw_overlay(r, v, p) &&
-                (!r->window || gpu_present(r->shown, v->canvas));
+    bool done = lay_ground(r, v, p, &what) && draw_overlay(r, v, p) && present(r, v);
     bool ended = gpu_frame_end(r->shown);
+    if (done && ended) redraw_keep(&v->redraw);
     return mem_leave(done && ended);
 }
 

@@ -34,6 +34,7 @@ static roil_texture *create_texture(roil *r, uint32_t width, uint32_t height, co
     }
     roil_texture *t = mem_alloc(sizeof *t);
     t->image = image;
+    t->version = ++r->textures;
     return t;
 }
 
@@ -52,6 +53,7 @@ void roil_texture_destroy(roil *r, roil_texture *t) {
 }
 
 gpu_image *view_drawn(roil *r, roil_texture *t) {
+    t->version = ++r->textures;
     if (!roil_shows_apart(r)) return t->image;
     const gpu_image_desc *size = gpu_image_get_desc(t->image);
     if (!t->drawn) t->drawn = make_texture(r->device, size->width, size->height);

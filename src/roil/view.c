@@ -71,6 +71,7 @@ void roil_free_view(roil *r) {
     kernel *looks[] = {&v->slices, &v->inspect[0][0], &v->inspect[0][1], &v->inspect[1][0],
                        &v->inspect[1][1]};
     roil_still_destroy(r, v->own);
+    redraw_free(&v->redraw);
     free_images(r->shown, shown, COUNT_OF(shown));
     free_images(r->device, drawn, COUNT_OF(drawn));
     gpu_buffer_destroy(r->shown, v->vertices);

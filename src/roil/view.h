@@ -2,6 +2,7 @@
 // The window may be drawn by another device than the effects (struct roil).
 #pragma once
 #include "kernel/kernel.h"
+#include "roil/redraw.h"
 #include "roil/roil_impl.h"
 
 enum { VIEW_READS = GPU_FRAMES_IN_FLIGHT + 1 };
@@ -24,6 +25,7 @@ typedef struct view_probe {      // reads values under the cursor back to the ho
 struct roil_texture {
     gpu_image *image;
     gpu_image *drawn; // what the effects' device draws for it; `image` where it draws the window
+    uint64_t version; // another one for each content, and for each texture
 };
 
 struct roil_still {
@@ -49,6 +51,8 @@ struct view {
     gpu_image *below;                     // what lies below the interface in it, ...
     compose_block composed;               // ... made of this ...
     const gpu_image *picture, *other;     // ... and of these; NULL: of what is not known
+    redraw_below made;                    // counts how often it was made
+    redraw redraw;                        // what the canvas shows
     roil_still *own;                      // of the effect that roil_show was given
     gpu_buffer *vertices, *indices;
     kernel compose, overlay; // each is built when it is first used

@@ -253,7 +253,7 @@ static void every_call_on_a_lost_device_fails_with_a_message(void **state) {
     assert_false(gpu_draw_all(g, &(gpu_draw_desc){.colors = {image}}));
     assert_false(gpu_image_write(g, image, 0, bytes, sizeof bytes));
     assert_false(gpu_buffer_write(g, buffer, 0, bytes, sizeof bytes));
-    assert_false(gpu_present(g, image));
+    assert_false(gpu_present(g, image, NULL, 0));
     assert_false(gpu_frame_end(g));
     assert_int_equal(gpu_frame_begin(g), 0);
     assert_false(gpu_image_read(g, image, bytes, sizeof bytes));

@@ -106,10 +106,14 @@ static gpu_image *make_image(gpu *g, gpu_format format, uint32_t width, uint32_t
     return image;
 }
 
-static void show(gpu *g, gpu_image *image) {
+static void show_changed(gpu *g, gpu_image *image, const gpu_area *changed, size_t count) {
     gpu_test_ok(gpu_frame_begin(g));
-    gpu_test_ok(gpu_present(g, image));
+    gpu_test_ok(gpu_present(g, image, changed, count));
     gpu_test_ok(gpu_frame_end(g));
+}
+
+static void show(gpu *g, gpu_image *image) {
+    show_changed(g, image, NULL, 0);
 }
 
 // As 0xrrggbb.
@@ -152,12 +156,17 @@ static gpu_image *make_ramp(gpu *g) {
     return image;
 }
 
-static gpu_image *make_plain(gpu *g, gpu_format format, const float color[4]) {
-    gpu_image *image = make_image(g, format, 3, 2);
+static gpu_image *make_plain_of(gpu *g, gpu_format format, const float color[4], uint32_t width,
+                                uint32_t height) {
+    gpu_image *image = make_image(g, format, width, height);
     gpu_test_ok(gpu_frame_begin(g));
     gpu_image_clear(g, image, color);
     gpu_test_ok(gpu_frame_end(g));
     return image;
+}
+
+static gpu_image *make_plain(gpu *g, gpu_format format, const float color[4]) {
+    return make_plain_of(g, format, color, 3, 2);
 }
 
 // ---- tests ------------------------------------------------------------------------------------
@@ -208,6 +217,40 @@ static void window_changes_its_size(void **state) {
     gpu_image_destroy(g, blue);
 }
 
+// Each image of the window gets what has changed since it was shown, and a software device copies
+// no more than that: here the rest of the image is not as it is said to be.
+static void what_has_changed_is_copied(void **state) {
+    static const gpu_area changed[] = {{4, 8, 16, 10}, {40, 30, 4, 4}}, later = {50, 0, 3, 3};
+    gpu *g = *state;
+    set_size(W, H);
+    gpu_image *red = make_plain_of(g, GPU_RGBA8, (const float[4]){1, 0, 0, 1}, W, H);
+    gpu_image *blue = make_plain_of(g, GPU_RGBA8, (const float[4]){0, 0, 1, 1}, W, H);
+    uint32_t rest = gpu_get_profile(g)->keeps_shown ? 0xff0000 : 0x0000ff;
+    expect_pixel(g, red, 0, 0, 0xff0000);
+    for (int i = 0; i < VK_MAX_SHOWN; i++) show(g, red);
+    show_changed(g, blue, changed, 2);
+    show_changed(g, blue, &later, 1);
+    for (int i = 0; i < 7; i++) { // with all images of the window in turn
+        show_changed(g, blue, &later, 0);
+        gpu_test_ok(gpu_idle(g));
+        glfwWaitEventsTimeout(0.02); // a picture is on the screen some time later
+        assert_int_equal(pixel(4, 8), 0x0000ff);
+        assert_int_equal(pixel(19, 17), 0x0000ff);
+        assert_int_equal(pixel(43, 33), 0x0000ff);
+        assert_int_equal(pixel(51, 1), 0x0000ff);
+        assert_int_equal(pixel(3, 8), rest);
+        assert_int_equal(pixel(44, 33), rest);
+        assert_int_equal(pixel(30, 25), rest); // between them
+    }
+    expect_pixel(g, blue, 3, 8, 0x0000ff);
+    gpu_test_ok(gpu_frame_begin(g));
+    assert_false(gpu_present(g, blue, &(gpu_area){W - 3, 0, 4, 4}, 1));
+    assert_non_null(strstr(err_get(), "what has changed lies outside of it"));
+    gpu_test_ok(gpu_frame_end(g));
+    gpu_image_destroy(g, red);
+    gpu_image_destroy(g, blue);
+}
+
 static void hidden_window_is_no_error(void **state) {
     gpu *g = *state;
     gpu_image *green = make_plain(g, GPU_RGBA8, (const float[4]){0, 1, 0, 1});
@@ -254,7 +297,7 @@ static void lost_surface_is_made_anew(void **state) {
     show(g, blue);
     gpu_test_ok(gpu_idle(g));
     gpu_test_ok(gpu_frame_begin(g));
-    assert_false(gpu_present(g, blue));
+    assert_false(gpu_present(g, blue, NULL, 0));
     assert_string_equal(err_get(), "the window gives no surface to draw to: not today");
     refuse_surface = false;
     gpu_test_ok(gpu_frame_end(g));
@@ -264,7 +307,7 @@ static void lost_surface_is_made_anew(void **state) {
 }
 
 static void expect_refusal(gpu *g, gpu_image *image, const char *part) {
-    assert_false(gpu_present(g, image));
+    assert_false(gpu_present(g, image, NULL, 0));
     if (!strstr(err_get(), part)) fail_msg("'%s' does not say '%s'", err_get(), part);
 }
 
@@ -275,7 +318,7 @@ static void what_cannot_be_shown_is_named(void **state) {
     expect_refusal(g, plain, "'picture' cannot be shown: no frame is open");
     gpu_test_ok(gpu_frame_begin(g));
     expect_refusal(g, counts, "'picture' (r32ui) cannot be shown; a 2D image of colours");
-    gpu_test_ok(gpu_present(g, plain));
+    gpu_test_ok(gpu_present(g, plain, NULL, 0));
     expect_refusal(g, plain, "the frame shows another one");
     gpu_test_ok(gpu_frame_end(g));
     gpu_image_destroy(g, counts);
@@ -333,7 +376,7 @@ static int hang_while_showing(void) {
                                                      .binding_count = 1,
                                                      .threads = {65535, 65535, 65535}}));
     gpu_pass_end(g);
-    gpu_test_ok(gpu_present(g, image));
+    gpu_test_ok(gpu_present(g, image, NULL, 0));
     bool told = !gpu_frame_end(g) && strstr(err_get(), "was lost in pass 'spin'");
     told = told && gpu_is_lost(g);
     gpu_destroy(g);
@@ -368,6 +411,7 @@ int main(int count, char **arguments) {
         cmocka_unit_test(pixels_arrive_one_by_one),
         cmocka_unit_test(pictures_follow_each_other),
         cmocka_unit_test(window_changes_its_size),
+        cmocka_unit_test(what_has_changed_is_copied),
         cmocka_unit_test(hidden_window_is_no_error),
         cmocka_unit_test(swapchain_is_replaced_when_it_does_not_fit),
         cmocka_unit_test(lost_surface_is_made_anew),

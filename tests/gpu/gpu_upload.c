@@ -151,6 +151,30 @@ static void frame_copies_land_in_a_mapped_buffer(void **state) {
     gpu_buffer_destroy(g, target);
 }
 
+static void areas_of_an_image_are_copied(void **state) {
+    gpu *g = *state;
+    uint8_t texels[16], zero[16] = {0}, found[16];
+    for (uint8_t i = 0; i < 16; i++) texels[i] = i + 1;
+    gpu_image *from = make_image(g, GPU_R8, 4, 4, 0), *to = make_image(g, GPU_R8, 4, 4, 0);
+    gpu_test_ok(gpu_image_write(g, from, 0, texels, 16));
+    gpu_test_ok(gpu_image_write(g, to, 0, zero, 16));
+    static const gpu_area areas[] = {{1, 0, 3, 1}, {0, 2, 2, 2}}, wide = {2, 0, 3, 1};
+    gpu_test_ok(gpu_image_copy_areas(g, from, to, areas, 2));
+    gpu_test_ok(gpu_image_copy_areas(g, from, to, areas, 0));
+    gpu_test_ok(gpu_image_read(g, to, found, 16));
+    static const uint8_t copied[16] = {0, 2, 3, 4, 0, 0, 0, 0, 9, 10, 0, 0, 13, 14, 0, 0};
+    assert_memory_equal(found, copied, 16);
+    gpu_test_ok(gpu_image_copy(g, from, to));
+    gpu_test_ok(gpu_image_read(g, to, found, 16));
+    assert_memory_equal(found, texels, 16);
+    assert_false(gpu_image_copy_areas(g, from, to, &wide, 1));
+    assert_non_null(strstr(err_get(), "area 0 is not inside"));
+    assert_false(gpu_image_copy_areas(g, from, to, areas, GPU_MAX_AREAS + 1));
+    assert_false(gpu_image_copy_areas(g, from, from, areas, 1));
+    gpu_image_destroy(g, from);
+    gpu_image_destroy(g, to);
+}
+
 static void wrong_sizes_are_refused(void **state) {
     gpu *g = *state;
     uint8_t bytes[16] = {0};
@@ -172,6 +196,7 @@ int main(void) {
         cmocka_unit_test(parts_of_a_buffer_are_read_and_written_at_any_byte),
         cmocka_unit_test(buffers_are_copied_from_their_beginning),
         cmocka_unit_test(frame_copies_land_in_a_mapped_buffer),
+        cmocka_unit_test(areas_of_an_image_are_copied),
         cmocka_unit_test(wrong_sizes_are_refused),
     };
     return gpu_test_run(tests, COUNT_OF(tests));

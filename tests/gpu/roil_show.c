@@ -331,6 +331,54 @@ static void interfaces_grow_and_shrink(void **state) {
     mem_free(indices);
 }
 
+// Half transparent quads, clipped, with and without a texture, over a picture: what is drawn only
+// where something has changed is what is drawn anew as a whole.
+static void what_changes_looks_as_if_drawn_anew(void **state) {
+    enum { W = 400, H = 300, QUADS = 40, ROUNDS = 12 };
+    roil *r = *state;
+    roil_effect *e = open_effect(r, ramp_shader, 64, 32);
+    roil_texture *t = roil_texture_create(r, 2, 2, (const uint8_t[16]){255, 90, 9, 200, 7, 7});
+    static roil_vertex v[4 * QUADS];
+    static uint32_t indices[6 * QUADS];
+    static roil_draw draws[QUADS];
+    roil_picture p = {.effect = e,
+                      .view = {10, 10, 310, 170},
+                      .vertices = v,
+                      .indices = indices,
+                      .draws = draws,
+                      .vertex_count = COUNT_OF(v),
+                      .index_count = COUNT_OF(indices),
+                      .draw_count = QUADS};
+    uint32_t random = 7;
+    for (uint32_t round = 0; round < ROUNDS; round++) {
+        for (uint32_t i = 0; i < QUADS; i++) {
+            random = random * 1664525 + 1013904223;
+            if (round && random >> 28) continue; // most stay
+            float x = (float)((random >> 8) % W) - 20.3f, y = (float)((random >> 18) % H) - 20.7f;
+            float size = i % 8 ? 30 : 150;
+            quad(v + 4 * i, x, y, x + size, y + size, random | 0x40000000);
+            for (uint32_t k = 0; k < 6; k++) indices[6 * i + k] = quads[k] + 4 * i;
+            draws[i] = (roil_draw){i % 3 ? NULL : t, 6 * i, 6, {x + 3, 0, W, y + 0.8f * size}};
+        }
+        if (round == 5) p.view[0] = 40;
+        if (round == 7) ok(roil_render(e, 2));
+        uint8_t *changed = show(r, W, H, &p);
+        mem_free(show(r, W / 2, H, &p)); // of another size: nothing of before holds
+        uint8_t *whole = show(r, W, H, &p);
+        assert_memory_equal(changed, whole, 4 * W * H);
+        mem_free(changed);
+        mem_free(whole);
+        if (round % 2) continue;
+        changed = show(r, W, H, &p); // nothing has changed
+        whole = show(r, W, H, &p);
+        assert_memory_equal(changed, whole, 4 * W * H);
+        mem_free(changed);
+        mem_free(whole);
+    }
+    roil_texture_destroy(r, t);
+    roil_unload(e);
+}
+
 static void wrong_indices_are_errors(void **state) {
     roil_vertex v[8];
     quad(v, 0, 0, N, N, 0xffffffff);
@@ -386,6 +434,7 @@ int main(void) {
         cmocka_unit_test(clips_cut_and_empty_ones_draw_nothing),
         cmocka_unit_test(textures_are_multiplied_by_the_colour),
         cmocka_unit_test(interfaces_grow_and_shrink),
+        cmocka_unit_test(what_changes_looks_as_if_drawn_anew),
         cmocka_unit_test(wrong_indices_are_errors),
         cmocka_unit_test(a_roil_without_device_shows_nothing),
         cmocka_unit_test(memory_in_use_is_counted),
