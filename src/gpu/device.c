@@ -4,6 +4,10 @@
 #include "gpu/vk.h"
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+enum { NICER = 2 }; // are threads of a device that yields
 
 // `copies`: a second family to have a queue of; -1: none.
 static VkDevice vk_device_create(gpu *g, const vk_choice *choice, int copies) {
@@ -171,9 +175,7 @@ static uint64_t timeout_of(const gpu *g, double seconds) {
     return seconds < 1e9 ? (uint64_t)(seconds * 1e9) : UINT64_MAX;
 }
 
-gpu *gpu_create(const gpu_desc *desc) {
-    static const gpu_desc defaults = {0};
-    if (!desc) desc = &defaults;
+static gpu *create(const gpu_desc *desc) {
     gpu *g = mem_alloc(sizeof *g);
     pthread_mutex_init(&g->retire_lock, NULL);
     pthread_mutex_init(&g->built_lock, NULL);
@@ -185,9 +187,42 @@ gpu *gpu_create(const gpu_desc *desc) {
     g->timeout = timeout_of(g, desc->timeout);
     g->waiting = desc->waiting;
     g->waiting_user = desc->user;
-    g->owner = pthread_self();
     log_write(LOG_DEBUG, "device: %s, %s%s", g->info.name, g->info.driver,
               g->instance.validating ? ", with validation" : "");
+    return g;
+}
+
+typedef struct made_apart {
+    const gpu_desc *desc;
+    gpu *made;
+    char *message;
+} made_apart;
+
+// Threads of the driver are as nice as the one that makes them, which may not be less nice again.
+static void *create_apart(void *user) {
+    made_apart *m = user;
+    const id_t self = (id_t)gettid();
+    setpriority(PRIO_PROCESS, self, getpriority(PRIO_PROCESS, self) + NICER);
+    m->made = create(m->desc);
+    if (!m->made) m->message = mem_copy(err_get(), strlen(err_get()) + 1);
+    return NULL;
+}
+
+static gpu *create_nicely(const gpu_desc *desc) {
+    made_apart m = {.desc = desc};
+    pthread_t thread;
+    if (pthread_create(&thread, NULL, create_apart, &m) != 0) return create(desc); // none is left
+    pthread_join(thread, NULL);
+    if (m.message) err_set("%s", m.message);
+    mem_free(m.message);
+    return m.made;
+}
+
+gpu *gpu_create(const gpu_desc *desc) {
+    static const gpu_desc defaults = {0};
+    if (!desc) desc = &defaults;
+    gpu *g = desc->yields ? create_nicely(desc) : create(desc);
+    if (g) g->owner = pthread_self();
     return g;
 }
 

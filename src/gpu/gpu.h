@@ -85,6 +85,7 @@ typedef struct gpu_desc {
     bool validate; // Khronos validation with synchronization validation; also $ROIL_VALIDATE=1
     const gpu_window *window; // NULL: nothing is shown; else the device can present to it
     bool small;     // it has the limits of a small device (profile.h); also $ROIL_SMALL_DEVICE=1
+    bool yields;    // threads of the driver are nicer than the caller, so that others go first
     double timeout; // seconds that submitted work may take before the device counts as lost; 0: 30,
                     // 300 on a software device
     // Called ten times a second by the thread that created the device, while that waits for work

@@ -109,6 +109,7 @@ static bool open_device(roil *r, const roil_desc *desc) {
         return r->device != NULL;
     how.device = gpu_get_info(r->shown)->name;
     how.window = NULL;
+    how.yields = true;
     r->device = gpu_create(&how);
     return r->device != NULL;
 }

@@ -2,8 +2,10 @@
 #include "base/file.h"
 #include "gpu_shaders.h"
 #include "gpu_test.h"
+#include <dirent.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -105,6 +107,32 @@ static void code_that_is_not_spirv_is_refused(void **state) {
     assert_non_null(strstr(err_get(), "'step'"));
 }
 
+// Returns how many threads of this process are as nice as that.
+static int threads_as_nice_as(int nice) {
+    DIR *threads = opendir("/proc/self/task");
+    assert_non_null(threads);
+    int count = 0;
+    for (struct dirent *entry; (entry = readdir(threads)) != NULL;)
+        if (entry->d_name[0] != '.')
+            count += getpriority(PRIO_PROCESS, (id_t)atoi(entry->d_name)) == nice;
+    closedir(threads);
+    return count;
+}
+
+// Only the driver's threads are nicer: what calls the device is not.
+static void threads_of_a_device_yield(void **state) {
+    int own = getpriority(PRIO_PROCESS, 0), nicer = own + 2 < 19 ? own + 2 : 19;
+    if (gpu_get_info(*state)->kind != GPU_CPU || own == nicer) skip();
+    int before = threads_as_nice_as(nicer);
+    gpu *g = gpu_create(&(gpu_desc){.yields = true});
+    gpu_test_ok(g);
+    assert_true(threads_as_nice_as(nicer) > before);
+    assert_int_equal(getpriority(PRIO_PROCESS, (id_t)gettid()), own);
+    gpu_destroy(g);
+    assert_null(gpu_create(&(gpu_desc){.yields = true, .device = "no such gpu"}));
+    assert_non_null(strstr(err_get(), "no such gpu"));
+}
+
 static void pipeline_cache_is_saved_and_a_broken_one_is_replaced(void **state) {
     (void)state;
     char folder[] = "/tmp/roil-cache-XXXXXX", pattern[64];
@@ -137,6 +165,7 @@ int main(void) {
         cmocka_unit_test(best_device_is_the_first_usable),
         cmocka_unit_test(device_is_found_by_index_and_part_of_name),
         cmocka_unit_test(wrong_device_name_lists_the_devices),
+        cmocka_unit_test(threads_of_a_device_yield),
         cmocka_unit_test(impossible_resources_are_refused),
         cmocka_unit_test(code_that_is_not_spirv_is_refused),
         cmocka_unit_test(pipeline_cache_is_saved_and_a_broken_one_is_replaced),
