@@ -26,8 +26,9 @@ enum { SETTLE_FRAMES = 4 };        // and frames, however long they take: menus 
 static const double STEADY = 0.12; // seconds that a size must last before pictures are made for it
 static const double TICK = 1 / 60.0, BLINK = 0.25, LONG = 600;
 // Seconds from one picture of the window to the next while a frame is at work, which needs the
-// processor too: where something moves, and where only the sign of it does.
-static const double LIVELY = 1 / 36.0, CALM = 1 / 10.0;
+// processor too: where a hand has done something, where something moves, and where only the sign of
+// the work does.
+static const double ANSWER = 1 / 80.0, LIVELY = 1 / 40.0, CALM = 1 / 10.0;
 static const double POLL = 0.004; // seconds after which the device is asked whether it is done
 enum { MAX_PICTURE = 16384 };
 
@@ -290,7 +291,7 @@ static bool at_work(const live *l) {
 // Returns the seconds until the window is drawn again although the effects' device is at work.
 static double time_to_show(const live *l, const loop *p, double now) {
     bool moves = l->time.playing || now < p->awake_until || p->awake_frames > 0 || ui_pending();
-    return fmax(p->showed + (moves ? LIVELY : CALM) - now, 0);
+    return fmax(p->showed + (ui_acts() ? ANSWER : moves ? LIVELY : CALM) - now, 0);
 }
 
 static double time_to_sleep(const live *l, const loop *p, double now) {

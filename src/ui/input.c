@@ -24,6 +24,12 @@ void input_push(input_queue *q, const input_event *e) {
     }
 }
 
+bool input_acts(const input_queue *q) {
+    for (size_t i = 0; i < q->count; i++)
+        if (q->events[(q->first + i) % INPUT_EVENTS].kind != INPUT_MOVE) return true;
+    return false;
+}
+
 static uint64_t *word_of(input_frame *frame, const input_event *e, uint64_t *bit) {
     unsigned key = (unsigned)e->code % INPUT_KEYS;
     *bit = UINT64_C(1) << key % 64;

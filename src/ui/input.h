@@ -39,5 +39,6 @@ void input_listen(GLFWwindow *window, input_queue *q);
 // Adds an event. Successive moves are merged, and so are turns of the wheel. A full queue drops its
 // oldest event.
 void input_push(input_queue *q, const input_event *e);
+bool input_acts(const input_queue *q); // an event is more than a move of the pointer
 // Takes the next event for this frame. False: there is none, or it is for the next frame.
 bool input_take(input_queue *q, input_frame *frame, input_event *out);

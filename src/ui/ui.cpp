@@ -224,6 +224,10 @@ bool ui_pending(void) {
     return ui.input.count > 0;
 }
 
+bool ui_acts(void) {
+    return input_acts(&ui.input);
+}
+
 // The backend asks GLFW for the state of now; this frame uses the state at its place in the queue.
 static void take_input(ImGuiIO &io) {
     input_frame frame = {};

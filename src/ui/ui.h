@@ -54,6 +54,7 @@ bool ui_types(void); // text is being typed
 // other input.
 void ui_on_key(void (*key)(void *user, int key, int mods, bool again), void *user);
 bool ui_pending(void); // there is input that the last frame could not take: draw another frame
+bool ui_acts(void);    // ... and it is more than moves of the pointer
 void ui_begin(void);
 void ui_end(roil_picture *out); // fills in the triangles; valid until the next ui_begin
 bool ui_wants_keys(void);       // text is being typed, a popup is open, or they walk

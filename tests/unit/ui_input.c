@@ -121,6 +121,18 @@ static void a_full_queue_forgets_the_oldest(void **state) {
     assert_int_equal(q.count, INPUT_EVENTS - 1);
 }
 
+static void a_move_alone_is_no_act(void **state) {
+    (void)state;
+    assert_false(input_acts(&q));
+    move(1);
+    assert_false(input_acts(&q));
+    key(264, DOWN);
+    move(2);
+    assert_true(input_acts(&q));
+    expect_frame("m1 k1 m2");
+    assert_false(input_acts(&q));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(moves_are_one, empty),
@@ -129,6 +141,7 @@ int main(void) {
         cmocka_unit_test_setup(a_tap_is_seen_down_for_a_frame, empty),
         cmocka_unit_test_setup(keys_wait_for_a_click, empty),
         cmocka_unit_test_setup(the_wheel_turns_where_the_pointer_was, empty),
+        cmocka_unit_test_setup(a_move_alone_is_no_act, empty),
         cmocka_unit_test_setup(a_full_queue_forgets_the_oldest, empty),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
