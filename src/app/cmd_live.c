@@ -141,14 +141,13 @@ static int run_window(live *l, window *w, const job *j) {
     restart_disarm();
     window_keep(w, &l->session);
     session_save(&l->session);
+    bool told = !j->stats || pulse_save(&l->pulse, j->stats, drawing_count(l));
     if (roil_is_lost(l->r) && !window_closing(w) && !l->quit) return restart(l, &j->device);
+    int status = (done || roil_is_lost(l->r)) && told ? APP_DONE : app_fail_input();
     if (roil_is_lost(l->r)) { // its threads may never end
         fflush(NULL);
-        _exit(APP_DONE);
+        _exit(status);
     }
-    int status = done && (!j->stats || pulse_save(&l->pulse, j->stats, drawing_count(l)))
-                     ? APP_DONE
-                     : app_fail_input();
     if (done && l->effect && l->pictures > 0) recent_add(l->file, l->effect);
     write_back_close(l);
     undo_free(&l->undo);

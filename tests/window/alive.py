@@ -69,10 +69,12 @@ class Alive(Case):
         live.quit()
 
     def test_a_window_is_closed_at_once(self):
-        live = self.slow(200000)
+        live = self.slow(200000, "--stats", self.path("deep/stats.json"))
         live.keys("Right")
         live.wait_until(lambda: "work" in live.widgets(), "the sign that a frame is at work")
         live.quit()
+        with open(self.path("deep/stats.json"), encoding="utf-8") as f:  # though the device was given up
+            self.assertGreater(json.load(f)["pictures"], 0)
 
 
 class Film(Case):
