@@ -14,7 +14,7 @@
 
 static const float WIDTH = 860, HEIGHT = 460; // units, as all of these
 static const float BOX = 168, PICTURE = 96, ROW = 18, PAD = 8, ACROSS = 60, DOWN = 18;
-enum { TEXELS_WIDE = 168, TEXELS_HIGH = 96, MOST_NAME = 96 };
+enum { TEXELS_WIDE = 152, TEXELS_HIGH = 96, MOST_NAME = 96 }; // of a picture, as in its box
 
 typedef struct box {
     size_t column;

@@ -21,6 +21,12 @@ class Graph(Case):
         live.wait_until(lambda: live.screenshot().crop(left, bottom + 24, right, bottom + 100).colors() > 40, "a picture of the march")
         left, _, right, bottom = final
         live.wait_until(lambda: live.screenshot().crop(left, bottom + 24, right, bottom + 100).colors() > 40, "the final picture")
+        left, _, right, bottom = live.widget("final/time")
+        seen = live.screenshot().crop(left + 10, bottom + 8, right - 10, bottom + 100)
+        bright = [(x, y) for y in range(seen.height) for x in range(seen.width) if max(seen.pixel(x, y)) > 64]
+        wide, high = (max(c) - min(c) for c in zip(*bright))
+        self.assertGreater(wide, 15)
+        self.assertLess(abs(wide - high), 2, f"the ball is round: {wide} x {high}")
         live.keys("n")
         live.wait_until(lambda: "march/name" not in live.widgets(), "the picture alone")
         live.quit()
