@@ -106,8 +106,7 @@ static void contrast(live *l) {
 
 // In steps of a tenth.
 static void resize(live *l, float tenths) {
-    float scale = roundf(l->session.scale * 10 + tenths) / 10;
-    l->session.scale = fminf(fmaxf(scale, 0.5f), 3);
+    session_resize(&l->session, tenths);
     live_notice(l, "Interface at %.0f %%", (double)l->session.scale * 100);
 }
 

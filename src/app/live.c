@@ -203,7 +203,7 @@ typedef struct layout {
 static layout lay_out(live *l, uint32_t width, uint32_t height) {
     float s = ui_scale(), w = (float)width, h = (float)height;
     layout out = {.has_panel = false};
-    l->view = (ui_rect){0, 0, w, h};
+    l->view = l->whole = (ui_rect){0, 0, w, h};
     if (l->session.panel_hidden) return out;
     float most = w - MIN_VIEW * s;
     float wide = fminf(fmaxf(l->session.panel, MIN_PANEL) * s, most);

@@ -87,6 +87,7 @@ typedef struct live {
     uint64_t pictures;      // that were drawn
     write_back *writing;    // what the user is asked to write; NULL: nothing
     uint32_t width, height; // of the effect's picture, pixels
+    ui_rect whole;          // the window
     ui_rect view;           // where the picture is shown
     float pointer[2];       // position in the picture, 0 to 1 from its top left
     struct window *window;
@@ -220,5 +221,6 @@ void live_press(live *l, int key, int mods, bool repeated); // of GLFW
 
 void session_load(live_session *s); // uses defaults for what was not saved
 void session_save(const live_session *s);
+void session_resize(live_session *s, float tenths); // the interface
 // Returns the path of a file in the user's state folder.
 bool session_file(char *out, size_t capacity, const char *name);

@@ -15,6 +15,7 @@
 
 enum { MAX_BYTES = 1 << 20, MAX_SIZE = 32768 };
 static const float PANEL = 380, MIN_PANEL = 200, MAX_PANEL = 2000;
+static const float LEAST_SCALE = 0.5f, MOST_SCALE = 3;
 
 bool session_file(char *out, size_t capacity, const char *name) {
     const char *own = getenv("ROIL_STATE_DIR"), *xdg = getenv("XDG_STATE_HOME");
@@ -66,7 +67,7 @@ static void session_read_json(live_session *s, const json_t *root) {
     s->probe = flag(root, "probe");
     s->graph = flag(root, "graph");
     s->contrast = flag(root, "contrast");
-    s->scale = (float)number(root, "scale", 0.5, 3, 1);
+    s->scale = (float)number(root, "scale", (double)LEAST_SCALE, (double)MOST_SCALE, 1);
     s->preview = whole(root, "preview", -1, LIVE_PREVIEWS - 1, -1);
     const char *image = json_string_value(json_object_get(root, "image"));
     if (!image || !str_copy(s->image, sizeof s->image, image)) s->image[0] = '\0';
@@ -84,6 +85,10 @@ void session_load(live_session *s) {
     if (json_is_object(root)) session_read_json(s, root);
     json_decref(root);
     mem_free(text);
+}
+
+void session_resize(live_session *s, float tenths) {
+    s->scale = fminf(fmaxf(roundf(s->scale * 10 + tenths) / 10, LEAST_SCALE), MOST_SCALE);
 }
 
 // ---- save -------------------------------------------------------------------------------------

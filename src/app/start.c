@@ -29,8 +29,8 @@ typedef struct page {
     card *cards;
     size_t count, capacity;
     char path[PATH_CAP], name[64], message[1024];
-    bool quit, enter, contrast;
-    float scale;
+    bool quit, enter;
+    live_session session;
     opening *out;
 } page;
 
@@ -112,10 +112,22 @@ static void on_key(void *user, int key, int mods, bool again) {
     page *p = user;
     (void)again;
     if (key == GLFW_KEY_ENTER) p->enter = true;
-    if (key == GLFW_KEY_ESCAPE || (key == GLFW_KEY_Q && (mods & GLFW_MOD_CONTROL))) p->quit = true;
+    bool control = mods & GLFW_MOD_CONTROL;
+    bool resizes = control && (key == GLFW_KEY_EQUAL || key == GLFW_KEY_MINUS);
+    if (key == GLFW_KEY_F2) p->session.contrast = !p->session.contrast;
+    if (resizes) session_resize(&p->session, key == GLFW_KEY_EQUAL ? 1 : -1);
+    if (key == GLFW_KEY_F2 || resizes) session_save(&p->session);
+    if (key == GLFW_KEY_ESCAPE || (key == GLFW_KEY_Q && control)) p->quit = true;
 }
 
 // ---- drawing ------------------------------------------------------------------------------------
+
+static void draw_none(ui_rect picture) {
+    ui_frame(picture, ui_rgba(UI_LINE, 1), 4 * ui_scale(), ui_scale());
+    label_center((picture.left + picture.right) / 2,
+                 (picture.top + picture.bottom - label_height()) / 2, ui_rgba(UI_LINE, 1),
+                 "no picture yet");
+}
 
 static void draw_card(page *p, card *c, ui_rect view) {
     float s = ui_scale();
@@ -127,9 +139,7 @@ static void draw_card(page *p, card *c, ui_rect view) {
     if (c->picture)
         ui_image(picture, c->picture);
     else
-        label_center((picture.left + picture.right) / 2,
-                     (picture.top + picture.bottom - label_height()) / 2, ui_rgba(UI_LINE, 1),
-                     "no picture yet");
+        draw_none(picture);
     if (at.hovered) ui_frame(picture, ui_rgba(UI_ACCENT, 1), 4 * s, 2 * s);
     label_within(picture.left, picture.bottom + 2 * s, PICTURE_WIDE * s,
                  ui_rgba(at.hovered ? UI_TEXT : UI_DIM, 1), c->name);
@@ -188,6 +198,9 @@ static void draw_side(page *p, ui_rect where) {
         "whose sequence an effect is written.");
     ui_gap(16 * s);
     draw_new(p);
+    ui_gap(16 * s);
+    ui_text_color(UI_DIM, "F2: high contrast");
+    ui_text_color(UI_DIM, "Ctrl+=, Ctrl+-: larger, smaller letters");
     if (p->message[0]) {
         ui_gap(16 * s);
         ui_text_color(UI_ERROR, "That did not work");
@@ -220,8 +233,8 @@ static bool run_page(page *p, window *w) {
         awake = woken || ui_pending() ? AWAKE : awake - (awake > 0);
         window_pixels(w, &width, &height);
         if (!width) continue;
-        ui_set_scale(window_scale(w) * p->scale);
-        ui_set_contrast(p->contrast);
+        ui_set_scale(window_scale(w) * p->session.scale);
+        ui_set_contrast(p->session.contrast);
         if (!draw_page(p, width, height)) return false;
     }
     return true;
@@ -243,14 +256,11 @@ static int run_device(page *p, window *w, const app_device *device) {
 }
 
 int start_choose(const app_device *device, int width, int height, opening *out) {
-    live_session session;
     window w;
     page p = {.out = out};
     *out = (opening){.recipe = NULL};
-    session_load(&session);
-    p.scale = session.scale;
-    p.contrast = session.contrast;
-    if (!window_open(&w, &session, "roil", width, height))
+    session_load(&p.session);
+    if (!window_open(&w, &p.session, "roil", width, height))
         return app_fail(APP_BAD_INPUT, "live: %s", roil_error());
     int status = run_device(&p, &w, device);
     window_close(&w);

@@ -1,11 +1,12 @@
 """The page on which one chooses an effect, and what can be opened there."""
 import ctypes
+import json
 import os
 import shutil
 import struct
 import subprocess
 
-from lib.window import PUFF, SOURCE, Case, Live, main, require_tools
+from lib.window import PATIENCE, PUFF, SOURCE, Case, Live, main, require_tools
 
 BALL = PUFF.replace('name = "puff"', 'name = "ball"')
 
@@ -97,6 +98,20 @@ class Start(Case):
         live.click_on("recent/puff")
         self.begins(live)
         live.quit()
+
+    def test_contrast_and_size_are_kept(self):
+        live = self.start()
+        high = live.widget("open")
+        live.wait_until(lambda: min(live.screenshot().pixel(3, 500)) > 20, "a grey ground")
+        live.keys("F2", "ctrl+equal", "ctrl+equal")
+        live.wait_until(lambda: live.screenshot().pixel(3, 500) == (0, 0, 0), "a black ground")
+        live.wait_until(lambda: live.widget("open")[3] - live.widget("open")[1] > high[3] - high[1] + 1, "a larger button")
+        live.keys("Escape")
+        live.process.wait(PATIENCE)
+        with open(self.path("state/session.json"), encoding="utf-8") as f:
+            kept = json.load(f)
+        self.assertTrue(kept["contrast"])
+        self.assertAlmostEqual(kept["scale"], 1.2, 3)
 
     def test_new_from_a_template(self):
         live = self.start("--size", "800x500")  # quick to draw
