@@ -4,7 +4,7 @@
 #include <math.h>
 
 static const float SPACING = 6, PADDING = 4, SWITCH_PADDING = 9; // units
-static const float MARGIN = 16, MIN_WINDOW = 240;
+static const float MARGIN = 16, LEAST_WIDE = 420, LEAST_HIGH = 240;
 
 float label_height(void) {
     return ui_line_height() - SPACING * ui_scale();
@@ -43,9 +43,9 @@ bool label_switch(const char *label, bool *on, uint32_t color) {
 }
 
 ui_rect label_place(ui_rect view, float width, float height, bool right) {
-    float s = ui_scale(), least = MIN_WINDOW * s, margin = MARGIN * s;
-    float wide = fminf(width * s, fmaxf(view.right - view.left - 2 * margin, least));
-    float high = fminf(height * s, fmaxf(view.bottom - view.top - 2 * margin, least));
+    float s = ui_scale(), margin = MARGIN * s;
+    float wide = fminf(width * s, fmaxf(view.right - view.left - 2 * margin, LEAST_WIDE * s));
+    float high = fminf(height * s, fmaxf(view.bottom - view.top - 2 * margin, LEAST_HIGH * s));
     float left = right ? fmaxf(view.right - margin - wide, view.left) : view.left + margin;
     return (ui_rect){left, view.top + margin, left + wide, view.top + margin + high};
 }

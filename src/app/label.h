@@ -15,5 +15,5 @@ void label_within(float left, float y, float width, uint32_t color, const char *
 bool label_switch(const char *label, bool *on, uint32_t color);
 
 // Returns the area of a new window of that size (units) in the upper left or right corner of the
-// view. It is smaller when the view is.
+// view. It is smaller when the view is, down to what its texts need.
 ui_rect label_place(ui_rect view, float width, float height, bool right);

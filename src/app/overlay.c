@@ -5,6 +5,7 @@
 #include "app/live.h"
 #include "app/text_wrap.h"
 #include "base/clock.h"
+#include "base/str.h"
 #include <math.h>
 #include <stdio.h>
 
@@ -50,17 +51,20 @@ typedef struct card {
 // Draws a card at the bottom of the view. Returns where there is room for a notice above it.
 static float draw_card(const card *c, ui_rect view) {
     float s = ui_scale();
-    char head[MAX_TEXT], rest[MAX_TEXT];
+    char head[MAX_TEXT];
+    strbuf rest = {0};
     text_message m = text_split(c->text);
     ui_rect at = card_place(&m, c->hint, view);
+    float columns = (at.right - at.left - 2 * PADDING * s) / ui_mono_width();
     snprintf(head, sizeof head, "%.*s", (int)m.head_length, m.head);
-    snprintf(rest, sizeof rest, "%.*s", (int)m.rest_length, m.rest);
+    text_excerpt(m.rest, m.rest_length, columns > 0 ? (size_t)columns : 0, &rest);
     ui_card_begin(c->name, at, ui_rgba(c->edge, 1));
     ui_text_wrapped(head);
     if (m.rest_lines) {
         ui_gap(SPACING * s);
-        ui_text_mono(UI_TEXT, rest);
+        ui_text_mono(UI_TEXT, strbuf_text(&rest), false);
     }
+    strbuf_free(&rest);
     if (c->hint) {
         ui_gap(SPACING * s);
         ui_text_color(UI_DIM, "%s", c->hint);

@@ -217,6 +217,7 @@ static void draw_list(live *l, ui_rect where) {
     const panel *p = l->panel;
     if (where.bottom <= where.top) return; // a very low window
     ui_panel_begin("panel", where);
+    if (strcmp(p->search, p->searched) != 0) ui_scroll_to_top(); // what was found first
     draw_sections(l);
     if (!p->control_count)
         ui_text_color(UI_DIM, "The effect has nothing to turn.");
@@ -245,6 +246,7 @@ void panel_draw(live *l, ui_rect where) {
     }
     panel_gather(p, l->effect);
     draw_list(l, middle);
+    str_copy(p->searched, sizeof p->searched, p->search);
     ui_panel_begin("presets", foot);
     presets_draw(l);
     ui_panel_end();

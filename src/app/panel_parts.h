@@ -34,7 +34,7 @@ typedef struct pending_value {
 } pending_value;
 
 struct panel {
-    char search[128];
+    char search[128], searched[128]; // the latter: when it was drawn last
     roil_control *controls;
     size_t control_count, control_capacity;
     panel_model model;

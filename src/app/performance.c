@@ -155,12 +155,12 @@ static void draw_pass(const rows *r, size_t pass, float ms, ui_rect at) {
     float s = ui_scale(), line = at.top + 2 * s;
     ui_rect dot = {at.left, at.top + 7 * s, at.left + 8 * s, at.top + 15 * s};
     ui_fill(dot, pass_color(pass, 1), 2 * s);
-    label_within(at.left + 16 * s, line, (NAME_WIDTH - 22) * s, ui_rgba(UI_TEXT, 1),
-                 r->past->passes[pass].name);
     float left = at.left + NAME_WIDTH * s, right = at.right - (MS_WIDTH + SHARE_WIDTH) * s;
-    ui_rect bar = {left, at.top + 6 * s, right, at.top + 16 * s};
+    label_within(at.left + 16 * s, line, fminf(left, right) - at.left - 22 * s, ui_rgba(UI_TEXT, 1),
+                 r->past->passes[pass].name);
+    ui_rect bar = {left, at.top + 6 * s, fmaxf(right, left), at.top + 16 * s};
     ui_fill(bar, ui_rgba(UI_FIELD, 1), 3 * s);
-    bar.right = left + (right - left) * (r->longest > 0 ? ms / r->longest : 0);
+    bar.right = left + (bar.right - left) * (r->longest > 0 ? ms / r->longest : 0);
     if (bar.right - bar.left >= s) ui_fill(bar, pass_color(pass, 1), 3 * s);
     char text[32];
     snprintf(text, sizeof text, ms < 10 ? "%.2f ms" : "%.1f ms", (double)ms);
@@ -185,6 +185,8 @@ static void draw_passes(const history *past, bool chosen, size_t ago) {
         draw_pass(&r, list[i], ms[i], (ui_rect){c.area.left, top, c.area.right, top + ROW * s});
     }
     ui_canvas_end();
+    size_t row = c.hovered ? (size_t)((c.y - c.area.top) / (ROW * s)) : count;
+    if (row < count) ui_tooltip(past->passes[list[row]].name); // it may be cut
 }
 
 // ---- numbers ----------------------------------------------------------------------------------
@@ -228,22 +230,30 @@ static void fact(ui_rect *at, const char *name, const char *value) {
 
 static const double MIB = 1024 * 1024;
 
+static size_t count_parts(const roil_memory *memory) {
+    size_t count = 0;
+    while (count < COUNT_OF(memory->largest) && memory->largest[count].bytes) count++;
+    return count;
+}
+
 static void draw_account(ui_rect *at, const roil_memory *memory) {
-    char text[320];
-    int length = snprintf(text, sizeof text, "%.0f of %.0f MiB", (double)memory->sum / MIB,
-                          (double)memory->limit / MIB);
-    for (size_t i = 0; i < 3 && memory->largest[i].bytes; i++)
-        length += snprintf(text + length, sizeof text - (size_t)length, "%s %s %.0f", i ? "," : ":",
-                           memory->largest[i].label, (double)memory->largest[i].bytes / MIB);
+    char text[64];
+    snprintf(text, sizeof text, "%.0f of %.0f MiB, of which", (double)memory->sum / MIB,
+             (double)memory->limit / MIB);
     fact(at, "all memory", text);
+    for (size_t i = 0; i < count_parts(memory); i++) {
+        snprintf(text, sizeof text, "    %.0f MiB", (double)memory->largest[i].bytes / MIB);
+        fact(at, text, memory->largest[i].label);
+    }
 }
 
 static void draw_facts(const live *l) {
     char text[128], failed[32] = "";
     roil_playback played;
     bool plays = l->effect && roil_get_playback(l->effect, &played);
-    ui_rect at = ui_canvas_begin("facts", 0, (plays ? 7 : 6) * ROW * ui_scale()).area;
     roil_memory memory = roil_get_memory(l->r);
+    size_t lines = 6 + plays + count_parts(&memory);
+    ui_rect at = ui_canvas_begin("facts", 0, (float)lines * ROW * ui_scale()).area;
     snprintf(text, sizeof text, "%.1f MiB, of %.0f MiB taken", (double)memory.device / MIB,
              (double)memory.reserved / MIB);
     fact(&at, "device memory", text);

@@ -12,7 +12,7 @@
 
 // Units.
 static const float TRACK_HEIGHT = 38, STRIP = 10, INSET = 8, REACH = 7, LABEL_SPACE = 64;
-static const float SPEED_FROM = 450, SWITCHES_FROM = 640, RATE_FROM = 710,
+static const float NUMBERS_FROM = 350, SPEED_FROM = 450, SWITCHES_FROM = 640, RATE_FROM = 710,
                    BRANCHES_FROM = 780; // of the bar's width
 
 enum { SNAPSHOTS = 64 };
@@ -188,8 +188,9 @@ static void draw_buttons(live *l) {
         t->loop = !t->loop;
 }
 
-// All frames take the same width, so that what is beside them does not move.
-static void draw_numbers(const timeline *t) {
+// All frames take the same width, so that what is beside them does not move. `whole`: with what
+// the number is of, and its time.
+static void draw_numbers(const timeline *t, bool whole) {
     float s = ui_scale(), space = ui_text_width(" ");
     char frame[32], widest[32], last[32], seconds[32];
     int decimals = t->smooth ? 2 : 0;
@@ -199,11 +200,13 @@ static void draw_numbers(const timeline *t) {
     snprintf(seconds, sizeof seconds, "%.2f s", timeline_seconds(t));
     float first = ui_text_width(widest) + 6 * s, second = ui_text_width(last);
     float third = ui_text_width(widest) + ui_text_width("00.00 s");
-    ui_canvas c = ui_canvas_begin("time", first + second + third, label_row());
+    ui_canvas c = ui_canvas_begin("time", first + (whole ? second + third : 0), label_row());
     float y = c.area.top + (label_row() - label_height()) / 2;
     label_right(c.area.left + first, y, ui_rgba(UI_TEXT, 1), frame);
-    ui_label(c.area.left + first + space, y, ui_rgba(UI_DIM, 1), last);
-    label_right(c.area.right - 6 * s, y, ui_rgba(UI_TEXT, 1), seconds);
+    if (whole) {
+        ui_label(c.area.left + first + space, y, ui_rgba(UI_DIM, 1), last);
+        label_right(c.area.right - 6 * s, y, ui_rgba(UI_TEXT, 1), seconds);
+    }
     ui_canvas_end();
 }
 
@@ -249,7 +252,7 @@ static void draw_row(live *l) {
     float units = (space.right - space.left) / ui_scale();
     draw_buttons(l);
     ui_same_line();
-    draw_numbers(t);
+    draw_numbers(t, units > NUMBERS_FROM);
     if (units > SPEED_FROM) {
         ui_same_line();
         draw_speed(t);

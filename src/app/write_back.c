@@ -108,7 +108,7 @@ static void draw_lines(const char *text, char sign, ui_color color) {
         size_t length = strcspn(at, "\n");
         line.length = 0;
         strbuf_add(&line, "%c %.*s", sign, (int)length, at);
-        ui_text_mono(color, strbuf_text(&line));
+        ui_text_mono(color, strbuf_text(&line), true);
         at += length + (at[length] == '\n');
     }
     strbuf_free(&line);

@@ -91,7 +91,7 @@ void part_font_begin(font_kind kind);                   // the font of the follo
 void part_font_end(void);
 bool part_bar(const char *id, double *value, const number_range *range, const char *unit,
               float width);
-void part_text(uint32_t color, const char *text);
+void part_text(uint32_t color, const char *text, bool wrapped);
 // Like ui_bare, for an area that moves. The pointer's shape shows that it can be dragged sideways.
 ui_canvas part_bare_sideways(const char *id, ui_rect area);
 void part_popup_open(const char *id);

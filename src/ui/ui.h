@@ -75,7 +75,8 @@ void ui_card_end(void);
 // its content.
 bool ui_window_begin(const char *title, bool *open, ui_rect where, bool fixed);
 void ui_window_end(void);
-ui_rect ui_space(void); // the rest of the current panel or window, from the cursor
+void ui_scroll_to_top(void); // of the panel or window
+ui_rect ui_space(void);      // the rest of the current panel or window, from the cursor
 void ui_same_line(void);
 void ui_align_right(float width); // the next widget, of that width, ends at the right edge
 void ui_gap(float height);
@@ -99,8 +100,9 @@ void ui_table_end(void);
 void ui_text(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void ui_text_color(ui_color color, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void ui_text_wrapped(const char *text);
-void ui_text_mono(ui_color color, const char *text); // code in a monospaced font, not wrapped
-void ui_tooltip(const char *text);                   // of the last widget
+void ui_text_mono(ui_color color, const char *text, bool wrapped); // code: a monospaced font
+float ui_mono_width(void);                                         // of a letter of it
+void ui_tooltip(const char *text);                                 // of the last widget
 float ui_text_width(const char *text);
 float ui_line_height(void);
 

@@ -65,6 +65,10 @@ void ui_window_end(void) {
     ui_panel_end();
 }
 
+void ui_scroll_to_top(void) {
+    ImGui::SetScrollY(0);
+}
+
 ui_rect ui_space(void) {
     ImVec2 at = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
     return {at.x, at.y, at.x + room.x, at.y + room.y};
@@ -122,9 +126,11 @@ void ui_table_end(void) {
 
 // ---- text -------------------------------------------------------------------------------------
 
-void part_text(uint32_t color, const char *text) {
+void part_text(uint32_t color, const char *text, bool wrapped) {
     ImGui::PushStyleColor(ImGuiCol_Text, color);
+    ImGui::PushTextWrapPos(wrapped ? 0 : -1);
     ImGui::TextUnformatted(text);
+    ImGui::PopTextWrapPos();
     ImGui::PopStyleColor();
 }
 

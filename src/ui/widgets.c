@@ -67,7 +67,7 @@ bool ui_button(const char *label) {
 static void text_of(ui_color color, const char *format, va_list args) {
     char text[MAX_TEXT];
     vsnprintf(text, sizeof text, format, args);
-    part_text(ui_rgba(color, 1), text);
+    part_text(ui_rgba(color, 1), text, false);
 }
 
 void ui_text(const char *format, ...) {
@@ -84,10 +84,18 @@ void ui_text_color(ui_color color, const char *format, ...) {
     va_end(args);
 }
 
-void ui_text_mono(ui_color color, const char *text) {
+void ui_text_mono(ui_color color, const char *text, bool wrapped) {
     part_font_begin(FONT_MONO);
-    part_text(ui_rgba(color, 1), text);
+    part_text(ui_rgba(color, 1), text, wrapped);
     part_font_end();
+}
+
+float ui_mono_width(void) {
+    part_font_begin(FONT_MONO);
+    static const char ten[] = "mmmmmmmmmm"; // the width of a text is rounded
+    float width = ui_text_width(ten) / (float)(sizeof ten - 1);
+    part_font_end();
+    return width;
 }
 
 bool ui_splitter(ui_rect area, float *position) {

@@ -60,6 +60,29 @@ static void messages_have_a_head_and_a_rest(void **state) {
     is_parts("", "", "", 0);
 }
 
+static void is_excerpt(const char *text, size_t columns, const char *expected) {
+    strbuf out = {0};
+    text_excerpt(text, strlen(text), columns, &out);
+    assert_string_equal(strbuf_text(&out), expected);
+    strbuf_free(&out);
+}
+
+static void long_lines_are_cut_around_their_caret(void **state) {
+    (void)state;
+    is_excerpt("x = y\n  ^", 16, "x = y\n  ^");
+    is_excerpt("0123456789abcdefghij", 16, "0123456789abc...");
+    is_excerpt("0123456789abcdef", 16, "0123456789abcdef");
+    is_excerpt("0123456789abcdefghij\n  ^\n from", 16, "0123456789abc...\n  ^\n from");
+    is_excerpt("0123456789abcdefghijklmnopqrstuvwxyz\n                    ^", 16, // below k
+               "...cdefghijkl...\n           ^");
+    is_excerpt("0123456789abcdefghij\n                   ^", 16,
+               "...789abcdefghij\n               ^");
+    is_excerpt("\u00e4123456789\u00e4bcdefghij\n                   ^\nb: 0123456789abcdefg", 1,
+               "...789\u00e4bcdefghij\n               ^\nb: 0123456789...");
+    is_excerpt("", 20, "");
+    is_excerpt("^\n\n ^", 20, "^\n\n ^");
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(words_fill_lines),
@@ -67,6 +90,7 @@ int main(void) {
         cmocka_unit_test(no_width_ends_too),
         cmocka_unit_test(only_as_much_as_is_asked_for),
         cmocka_unit_test(messages_have_a_head_and_a_rest),
+        cmocka_unit_test(long_lines_are_cut_around_their_caret),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

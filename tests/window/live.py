@@ -157,6 +157,15 @@ class Panel(Case):
         found = [m for m in (re.search(rf"live: set {name} = (.*)", line) for line in live.log) if m]
         return found[-1].group(1) if found else None
 
+    def test_a_search_begins_at_its_top(self):
+        live = self.live("--paused")
+        live.tool("mousemove", *(round(v) for v in live.middle("panel")), "click", "--repeat", 15, "--delay", 20, 5)
+        live.wait_until(lambda: live.widgets()["thickness"][3] < 0, "the end of the panel")
+        live.click_on("search")
+        live.type("s")  # finds more than there is room for
+        live.wait_until(lambda: live.widgets().get("steps", [0, -1])[1] > live.widgets()["search"][3], "its first row")
+        live.quit()
+
     def test_search_leaves_what_matches(self):
         live = self.live()
         live.widget("thickness")

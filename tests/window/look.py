@@ -66,6 +66,22 @@ class Look(Case):
         self.check_places(live, 1280)
         live.quit()
 
+    def test_what_opens_fits_small_windows_and_large_letters(self):
+        live = self.opened("--size", "1280x720")
+        live.keys("F1")
+        _, top, right, bottom = live.widget("keys")
+        self.assertTrue(top >= 0 and right <= 1280 and bottom <= 720, "all keys are seen")
+        live.keys("F1", *["ctrl+equal"] * 10)
+        live.expect("live: notice: Interface at 200 %")
+        live.keys("F1")
+        live.wait_until(lambda: live.widgets().get("keys", [0, 0, 0, 0])[3] > 720, "one column, to be scrolled")
+        self.assertLessEqual(live.widgets()["keys"][2], 1280)
+        live.keys("F1", "p")
+        left, _, right, _ = live.widget("performance")
+        self.assertGreaterEqual(right - left, 2 * 420)  # what its texts need
+        self.assertLessEqual(live.widget("time")[2], live.widget("view")[2])
+        live.quit()
+
     def test_by_keys_alone(self):
         live = self.opened()
         live.keys("F6")
