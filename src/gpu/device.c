@@ -259,6 +259,16 @@ bool gpu_left_any(void) {
     return atomic_load(&left_any);
 }
 
+// A host's other queues are not ours. One that counts as lost since it took no more work may still
+// be at what it took before.
+static VkResult wait_for_ours(gpu *g) {
+    VkSemaphoreWaitInfo info = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO,
+                                .semaphoreCount = 1,
+                                .pSemaphores = &g->timeline,
+                                .pValues = &g->submitted};
+    return g->submitted ? g->vk.WaitSemaphores(g->device, &info, g->timeout) : VK_SUCCESS;
+}
+
 // Work that hangs never lets go of what it uses, and drivers wait for it without a limit when the
 // device is destroyed; and where waiting fails nobody knows what is still in use. All of such a
 // device, `g` too, is left to the end of the process: the caller must get on, and can have a new
@@ -269,8 +279,7 @@ static bool comes_to_rest(gpu *g) {
         log_write(LOG_WARNING, "%s; its memory stays in use", g->loss);
         return false;
     }
-    if (g->host.device) return true; // all of ours is done, and its other queues are not ours
-    VkResult rest = g->vk.DeviceWaitIdle(g->device);
+    VkResult rest = g->host.device ? wait_for_ours(g) : g->vk.DeviceWaitIdle(g->device);
     if (rest == VK_SUCCESS || rest == VK_ERROR_DEVICE_LOST) return true;
     log_write(LOG_WARNING,
               "the device '%s' cannot be waited for (Vulkan result %d); its memory stays in use",

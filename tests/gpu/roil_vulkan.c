@@ -5,6 +5,7 @@
 
 #include "roil_test.h"
 #include "roil_vulkan.h"
+#include <pthread.h>
 
 // A ball of smoke, 4.2 m to 5.8 m before the camera of `straight`.
 static const char ball[] =
@@ -251,6 +252,56 @@ static void what_fails_is_given_back(void **state) {
     expect_error(roil_vulkan_render(e, 0, &f), "9 semaphores to wait for");
     roil_unload(e);
     roil_destroy(r);
+}
+
+static bool refuses; // submissions of roil's
+
+static VKAPI_ATTR VkResult VKAPI_CALL submit_or_refuse(VkQueue to, uint32_t count,
+                                                       const VkSubmitInfo2 *infos, VkFence fence) {
+    return refuses ? VK_ERROR_OUT_OF_HOST_MEMORY : vkQueueSubmit2(to, count, infos, fence);
+}
+
+static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_of_device(VkDevice of, const char *name) {
+    return strcmp(name, "vkQueueSubmit2") == 0 ? (PFN_vkVoidFunction)submit_or_refuse
+                                               : vkGetDeviceProcAddr(of, name);
+}
+
+static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_of_instance(VkInstance of, const char *name) {
+    return strcmp(name, "vkGetDeviceProcAddr") == 0 ? (PFN_vkVoidFunction)get_of_device
+                                                    : vkGetInstanceProcAddr(of, name);
+}
+
+static void *signal_later(void *user) {
+    const VkSemaphoreSignalInfo info = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SIGNAL_INFO,
+                                        .semaphore = timeline,
+                                        .value = *(const uint64_t *)user};
+    usleep(300000);
+    VK(vkSignalSemaphore(device, &info));
+    return NULL;
+}
+
+// Nothing is destroyed that a frame before is still at: here it waits for the host.
+static void what_is_at_work_is_waited_for_when_no_more_is_taken(void **state) {
+    (void)state;
+    roil_vulkan vulkan = host();
+    vulkan.get = get_of_instance;
+    roil *r = roil_create(&(roil_desc){.vulkan = &vulkan, .home = getenv("ROIL_SOURCE_DIR")});
+    ok(r);
+    roil_effect *e = open_ball(r);
+    const roil_vulkan_semaphore wait = {timeline, now + 1}, signal = {timeline, now + 2};
+    roil_vulkan_frame f = {.waits = &wait, .wait_count = 1, .signals = &signal, .signal_count = 1};
+    ok(roil_vulkan_render(e, 0, &f));
+    refuses = true;
+    expect_error(roil_vulkan_render(e, 1, &(roil_vulkan_frame){0}), "has no host memory left");
+    refuses = false;
+    assert_true(roil_is_lost(r));
+    pthread_t thread;
+    uint64_t value = now + 1;
+    assert_int_equal(pthread_create(&thread, NULL, signal_later, &value), 0);
+    roil_unload(e);
+    roil_destroy(r);
+    pthread_join(thread, NULL);
+    now += 2;
 }
 
 // ---- other processes: this test's device stands for that of one, and roil has its own ----------
@@ -539,6 +590,7 @@ int main(void) {
         cmocka_unit_test(walls_hide_what_is_behind_them),
         cmocka_unit_test(depths_of_every_format_are_read),
         cmocka_unit_test(what_fails_is_given_back),
+        cmocka_unit_test(what_is_at_work_is_waited_for_when_no_more_is_taken),
         cmocka_unit_test(images_are_read_by_another_device),
         cmocka_unit_test(a_limit_on_memory_is_kept),
         cmocka_unit_test(a_sequence_keeps_to_the_limit),
