@@ -34,14 +34,19 @@ typedef struct render_job {
     double part;    // 0 to 1
 } render_job;
 
-typedef enum render_format { RENDER_PNG, RENDER_EXR, RENDER_MP4, RENDER_FORMATS } render_format;
-static const char *const format_words[] = {"PNG pictures", "EXR pictures", "MP4 video"};
+enum { RENDER_SHEET = 7, RENDER_FORMATS };
+static const char *const format_words[RENDER_FORMATS] = {
+    "PNG pictures",        "EXR pictures", "MP4 video", "WebM video",
+    "ProRes video (.mov)", "GIF",          "APNG",      [RENDER_SHEET] = "sheet of a flipbook"};
+static const char *const format_ends[RENDER_FORMATS] = {
+    "-%04d.png", "-%04d.exr", ".mp4", ".webm", ".mov", ".gif", ".apng", [RENDER_SHEET] = ".png"};
 
 struct render_queue {
     bool open;
     render_job jobs[MOST];
     size_t count;
     char frames[64], size[32], samples[16], output[256];
+    char chosen[64], cells[32], cell[16], maps[96]; // of a sheet; the first: frames
     size_t format;
     bool filled; // the fields have a first text
 };
@@ -163,6 +168,9 @@ static void fill(live *l, render_queue *q) {
     snprintf(q->frames, sizeof q->frames, "%.0f-%.0f", l->time.from, l->time.to);
     if (q->filled) return;
     str_copy(q->size, sizeof q->size, "1920x1080");
+    str_copy(q->cells, sizeof q->cells, "8x8");
+    str_copy(q->cell, sizeof q->cell, "256");
+    str_copy(q->maps, sizeof q->maps, "color");
     snprintf(q->output, sizeof q->output, "out/%.*s", length, name);
     q->filled = true;
 }
@@ -180,9 +188,27 @@ bool render_queue_close(live *l) {
 }
 
 static const char *name_output(const render_queue *q, char *out, size_t capacity) {
-    static const char *const ends[] = {"-%04d.png", "-%04d.exr", ".mp4"};
-    snprintf(out, capacity, "%s%s", q->output, ends[q->format]);
+    snprintf(out, capacity, "%s%s", q->output, format_ends[q->format]);
     return out;
+}
+
+static void add_all(arguments *a, const char *const *list, size_t count) {
+    for (size_t i = 0; i < count; i++) arguments_add(a, list[i]);
+}
+
+static void add_wishes(arguments *a, const render_queue *q) {
+    const char *const sheet[] = {"roil",   "export", "sheet",  "--grid", q->cells,
+                                 "--cell", q->cell,  "--maps", q->maps};
+    const char *const pictures[] = {"roil", "render", "--size", q->size, "--frames", q->frames};
+    const char *const chosen[] = {"--frames", q->chosen}, *const traced[] = {"--reference",
+                                                                             q->samples};
+    if (q->format == RENDER_SHEET) {
+        add_all(a, sheet, COUNT_OF(sheet));
+        if (q->chosen[0]) add_all(a, chosen, COUNT_OF(chosen));
+    } else {
+        add_all(a, pictures, COUNT_OF(pictures));
+        if (q->samples[0]) add_all(a, traced, COUNT_OF(traced));
+    }
 }
 
 // What is set in the window holds for it, and the file is the one that is there when its turn
@@ -197,11 +223,9 @@ static void ask(live *l, render_queue *q) {
     *j = (render_job){.state = JOB_WAITS};
     name_output(q, output, sizeof output);
     str_copy(j->name, sizeof j->name, output);
-    const char *const always[] = {"roil",   "render", "--frames", q->frames,
-                                  "--size", q->size,  "--output", output};
-    for (size_t i = 0; i < COUNT_OF(always); i++) arguments_add(&j->what, always[i]);
-    if (q->samples[0]) arguments_add(&j->what, "--reference");
-    if (q->samples[0]) arguments_add(&j->what, q->samples);
+    const char *const to[] = {"--output", output};
+    add_wishes(&j->what, q);
+    add_all(&j->what, to, COUNT_OF(to));
     arguments_add_device(&j->what, l->device);
     arguments_add_moved(&j->what, l->effect);
     arguments_add(&j->what, "--");
@@ -217,17 +241,38 @@ static void forget(render_queue *q, size_t index) {
 
 // ---- the window -------------------------------------------------------------------------------
 
-static void draw_fields(render_queue *q) {
-    ui_push("render");
+static void draw_picture_fields(render_queue *q) {
     ui_width(0);
     ui_input("frames", "30 or 1-100 or 10,30", q->frames, sizeof q->frames);
     ui_width(0);
     ui_input("size", "1920x1080", q->size, sizeof q->size);
     ui_width(0);
-    ui_choice("format", &q->format, format_words, RENDER_FORMATS);
-    ui_width(0);
     ui_input("samples", "none: as the window shows it", q->samples, sizeof q->samples);
     ui_tooltip("traces so many paths of light a pixel instead, without approximations");
+}
+
+static void draw_sheet_fields(render_queue *q) {
+    ui_width(0);
+    ui_input("frames", "all, evenly spread over the cells", q->chosen, sizeof q->chosen);
+    ui_width(0);
+    ui_input("cells", "8x8", q->cells, sizeof q->cells);
+    ui_tooltip("across and down");
+    ui_width(0);
+    ui_input("cell size", "256", q->cell, sizeof q->cell);
+    ui_tooltip("pixels along each side of a cell");
+    ui_width(0);
+    ui_input("maps", "color,motion,six-way", q->maps, sizeof q->maps);
+    ui_tooltip("color, motion, six-way, normal, depth, temperature, separated by commas");
+}
+
+static void draw_fields(render_queue *q) {
+    ui_push("render");
+    ui_width(0);
+    ui_choice("format", &q->format, format_words, RENDER_FORMATS);
+    if (q->format == RENDER_SHEET)
+        draw_sheet_fields(q);
+    else
+        draw_picture_fields(q);
     ui_width(0);
     ui_input("files", "out/name", q->output, sizeof q->output);
     ui_pop();
@@ -269,7 +314,7 @@ void render_queue_draw(live *l) {
     if (ui_window_begin("Render", &q->open, where, false)) {
         draw_fields(q);
         ui_width(0);
-        ui_disable_begin(!l->effect || !q->output[0] || !q->frames[0] || !q->size[0]);
+        ui_disable_begin(!l->effect || !q->output[0]);
         ui_rect button = ui_space();
         button.bottom = button.top + ui_line_height();
         ui_mark("render add", button);

@@ -248,6 +248,22 @@ class Out(Case):
             self.assertEqual(same.returncode, 0, same.stdout)
         live.quit()
 
+    def test_a_sheet_is_made_beside_the_window(self):
+        live = self.live("--set", "thickness=9")
+        live.keys("ctrl+r")
+        live.click_on("render/format")
+        live.click_on("render/sheet of a flipbook")
+        self.ask(live, **{"cells": "2x2", "cell size": "32", "maps": "color,normal", "files": "made/puff"})
+        live.expect("live: asked for made/puff.png")
+        live.expect("live: rendering of made/puff.png done")
+        subprocess.run([PROGRAM, "export", "sheet", "puff.lua", "--set", "thickness=9", "--grid", "2x2", "--cell", "32", "--maps",
+                        "color,normal", "-o", "other/puff.png"], cwd=self.folder, env=self.environment, check=True,
+                       timeout=PATIENCE, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        for name in ("puff.png", "puff-normal.png"):
+            with open(self.path("made/" + name), "rb") as made, open(self.path("other/" + name), "rb") as other:
+                self.assertEqual(made.read(), other.read(), name)
+        live.quit()
+
     def test_what_cannot_be_rendered_says_why_and_what_runs_can_be_stopped(self):
         live = self.live()
         live.keys("ctrl+r")
