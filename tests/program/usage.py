@@ -11,6 +11,7 @@ class Usage(Case):
         done = self.run_program()
         self.assertEqual(done.returncode, 2)
         self.assertIn("usage: roil", done.stderr)
+        self.assertIn("Effects here: puff.lua. Begin with `roil live puff.lua`.", done.stderr)
 
     def test_help_and_version_are_no_errors(self):
         for word in ("--help", "-h", "help"):

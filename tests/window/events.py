@@ -50,6 +50,16 @@ class Events(Case):
         self.assertRegex(live.expect(EVENTS).group(1), r"^0 click( -?[\d.e-]+){6}; 0 key f( -?[\d.e-]+){6}$")
         live.wait_until(lambda: difference(moved, self.picture(live)) > 40, "a brighter ball")
 
+        # Both are undone, one by one, and done again.
+        for wanted, what in ((moved, "the ball before the key"), (before, "the ball before the click")):
+            live.keys("ctrl+z")
+            live.expect(r"live: undid .*events")
+            live.wait_until(lambda: difference(wanted, self.picture(live)) < 6, what)
+        for _ in range(2):
+            live.keys("ctrl+y")
+            live.expect(r"live: redid .*events")
+        live.wait_until(lambda: difference(moved, self.picture(live)) > 40, "a brighter ball again")
+
         # A drag turns the camera and is no click; Alt has the window's own key.
         left, top, right, bottom = live.widget("view")
         mark = live.mark()
