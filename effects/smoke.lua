@@ -1,6 +1,6 @@
--- Smoke that is simulated: hot air rises from a small fire, rolls up and breaks into eddies. Nothing
--- is drawn by hand; what the air does follows from heat and viscosity, and noise is only for what is
--- finer than its cells.
+-- Smoke that is simulated: hot air rises from a fire of damp logs, rolls up and breaks into eddies.
+-- Nothing is drawn by hand; what the air does follows from heat and viscosity, and noise is only for what
+-- is finer than its cells.
 --
 --   roil render effects/smoke.lua --frames 72 -o smoke.png
 --   roil render effects/smoke.lua --frames 72 --set lbm.buoyancy_heat=10 -o hotter.png
@@ -9,6 +9,7 @@ local fx = effect { name = "smoke", fps = 24, frames = 240, author = "the roil a
 
 local density = param { "density", 12, min = 0, max = 100, unit = "1/m", help = "how thick the smoke is" }
 local heat    = param { "heat", 1, min = 0, max = 4, help = "temperature of the fire" }
+local fire    = param { "fire", 1, min = 0, max = 10, help = "how bright it is" }
 
 -- Small enough for a computer without a graphics card. On one that has it, try {96, 96, 192} cells of 0.04 m.
 local air = lbm {
@@ -33,17 +34,21 @@ local cover = clamp(air.density:warp(folds, 0.25) * 1.8, 0, 1)
 local smoke = cover * smoothstep(0, 0.9, cover - 1.3 * (1 - lumps) * (1 - 0.35 * cover))
 
 -- A low sun from the side, a little from behind: each billow throws its shadow on the next.
-fx.camera = orbit { target = {0, 0, 3.4}, distance = 15, yaw = 25, pitch = 3, fov = 34 }
-fx.sun    = sun { azimuth = 190, elevation = 28, color = {1, 0.84, 0.64}, strength = 9 }
+fx.camera = orbit { target = {0, 0, 2.8}, distance = 10.5, yaw = 25, pitch = -6, fov = 34 }
+fx.sun    = sun { azimuth = 190, elevation = 28, color = {1, 0.84, 0.64}, strength = 6.5 }
 fx.sky    = sky { zenith = {0.02, 0.05, 0.16}, horizon = {0.14, 0.20, 0.32}, strength = 0.6 }
 
+-- The fire itself is hidden; what one sees of it is its light, from within.
+fx.lights = { point_light { position = {0, 0, 0.5}, color = {1, 0.34, 0.07}, power = fire * 1000 * (0.85 + 0.15 * sin(23 * time) * sin(31 * time)) } }
+
 local lit    = lighting { density = smoke * density, albedo = {0.86, 0.86, 0.88}, anisotropy = 0.35, sampling = "linear" }
-local scene  = geometry { mesh { "data/ground.obj", color = {0.4, 0.42, 0.42} } }
+local scene  = geometry { mesh { "data/ground.obj", color = {0.55, 0.57, 0.6} }, mesh { "data/logs.obj", scale = 1.3 } }
 local solid  = shade { from = {scene, lit}, haze = 0.01 }
-local volume = march { from = {lit, scene}, steps = 128 }
+local volume = march { from = {lit, scene}, steps = 128, jitter = 0.5 }
 
 local picture = over { volume, solid, from = {volume, scene} }
-local shown   = final { source = picture, tonemap = "aces" }
+local halo    = bloom { bright { picture, threshold = 1 }, radius = 0.7 }
+local shown   = final { source = picture, bloom = halo, bloom_intensity = 0.3, exposure_ev = 0.3, tonemap = "aces" }
 
 fx.output = shown.color
 fx.linear = shown.linear
