@@ -59,8 +59,8 @@ static bool take_home(char out[PATH_CAP], const char *folder) {
     return is_home(folder) && realpath(folder, real) && str_copy(out, PATH_CAP, real);
 }
 
-// The program or library may lie in a build folder, in the home itself, or in bin/, lib/ or
-// lib/ARCHITECTURE/ of an installation.
+// The program or library may lie in a build folder, in the home itself, in bin/, lib/ or
+// lib/ARCHITECTURE/ of an installation, or beside a link, as a part of another build.
 static bool find_home(char out[PATH_CAP], const char *wanted) {
     if (!wanted) wanted = getenv("ROIL_HOME");
     if (wanted && wanted[0])
@@ -68,7 +68,8 @@ static bool find_home(char out[PATH_CAP], const char *wanted) {
                err_set("%s: holds no shaders/ and scripts/ of roil", wanted);
     char own[PATH_CAP], folder[PATH_CAP];
     if (!path_own_folder(own)) return false;
-    static const char *const places[] = {"..", ".", "../share/roil", "../../share/roil", "../.."};
+    static const char *const places[] = {"..",         ".",    "../share/roil", "../../share/roil",
+                                         "share/roil", "../.."};
     for (size_t i = 0; i < COUNT_OF(places); i++)
         if (path_join(folder, own, places[i]) && take_home(out, folder)) return true;
     return err_set("shaders/ and scripts/ of roil are not near %s; set ROIL_HOME", own);
