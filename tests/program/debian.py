@@ -22,11 +22,11 @@ class Debian(Case):
         cls.top = tempfile.mkdtemp(prefix="roil-debian-")
         cls.addClassCleanup(shutil.rmtree, cls.top)
         cls.folders = [os.path.join(cls.top, name) for name in ("once", "again")]
-        for folder in cls.folders:
+        for folder, umask in zip(cls.folders, (0o022, 0o077)):
             os.mkdir(folder)
             run("cpack", "--config", os.path.join(BINARY, "CPackConfig.cmake"), "-B", folder,
                 "-D", "CPACK_DEBIAN_COMPRESSION_TYPE=none",  # packing takes longest, and is gzip's own
-                cwd=folder)
+                cwd=folder, umask=umask)
         cls.files = sorted(name for name in os.listdir(cls.folders[0]) if name.endswith(".deb"))
         cls.root = os.path.join(cls.top, "root")
         for name in cls.files:
