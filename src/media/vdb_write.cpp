@@ -82,11 +82,14 @@ template <class Grid> struct leaves {
     }
 };
 
-template <class Grid> typename Grid::Ptr to_grid(const vdb_write_grid &w) {
+// The library makes the empty grid: a constructor here would compile all that a grid can do once more.
+template <class Grid> GridBase::Ptr to_grid(const vdb_write_grid &w) {
     leaves<Grid> all(w);
-    auto grid = Grid::create(all.background);
+    GridBase::Ptr grid = GridBase::createGrid(Grid::gridType());
+    auto &tree = static_cast<Grid &>(*grid).tree();
+    tree.root().setBackground(all.background, false);
     all.make_all();
-    all.hand_over(grid->tree());
+    all.hand_over(tree);
     return grid;
 }
 
