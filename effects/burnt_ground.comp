@@ -15,7 +15,8 @@ void main() {
     vec4 base = texelFetch(albedo, pixel, 0);
     vec3 p = frame.eye.xyz + frame_ray((vec2(pixel) + 0.5) / vec2(size)) * texelFetch(depth, pixel, 0).r;
     float here = 0.0;
+    int reach = lift > 0.0 ? 1 : 0;
     if (base.a > 0.0) // both arms would be evaluated for the sky, too
-        for (int i = -1; i <= 1; i++) here = max(here, field_burnt(p + vec3(0.0, 0.0, lift * float(i))));
+        for (int i = -reach; i <= reach; i++) here = max(here, field_burnt(p + vec3(0.0, 0.0, lift * float(i))));
     imageStore(color, pixel, vec4(mix(base.rgb, soot, 1.0 - exp(-3.0 * here)), base.a));
 }

@@ -42,17 +42,28 @@ local kinds = {
 }
 local lumps = kinds[noise:get()]()
 
--- Lumps stand out where the smoke is thin; the thick core is left alone. When the smoke thins out
--- as a whole, at the end, it fades instead of falling to pieces.
-local fade  = curve { {0, 1}, {1.7, 1}, {3.2, 0.3}, shape = "ease_in_out" }
+-- Lumps stand out where the smoke is thin; the thick core is left alone. As it ages it thins out, and
+-- is eaten less, so that it fades instead of falling to pieces.
+local fade  = curve { {0, 1}, {1.7, 1}, {3.2, 0.55}, shape = "ease_in_out" }
+local thin  = curve { {0, 1}, {1.7, 1}, {2.8, 0.65}, shape = "ease_in_out" }
 local eaten = detail * fade
 local cover = clamp(smoke * 2.2, 0, 1)
 local crust = smoothstep(0, 0.15, cover - eaten * (1 - lumps) * (1 - 0.6 * cover))
+local soot  = cover * crust * (smoke + 0.15) * density * thin
 
--- A black body's light grows with the fourth power of its temperature. The first fire is so hot that all
--- of it would be white on a display; less of it keeps its colour and its folds.
-local young = curve { {0, 0.5}, {0.35, 0.45}, {0.8, 0.85}, {1.1, 1}, shape = "ease_in_out" }
-local fire = palette { blackbody = {500, 4500}, physical = true, reference = 1500 }
+-- A black body is white where it is very hot, as the first fire is all over. It is shown colder than it
+-- is, so that it keeps its colour and its folds.
+local young = curve { {0, 0.62}, {0.4, 0.68}, {0.8, 0.88}, {1.1, 1}, shape = "ease_in_out" }
+local fire  = palette { blackbody = {500, 4500}, physical = true, reference = 1500 }
+
+-- It strikes the ground: a ring of dust runs outwards, rises a little and thins out.
+local way   = position - vec(4, 4, 0)
+local far   = length(way * vec(1, 1, 0))
+local front = curve { {0, 0.3}, {0.15, 2}, {0.5, 3.1}, {1.5, 3.9}, {4, 4.4}, shape = "cubic" }
+local high  = curve { {0, 0.3}, {0.4, 0.75}, {4, 1.4} }
+local dusty = curve { {0, 0}, {0.1, 12}, {0.8, 7}, {4, 0}, shape = "ease_out" }
+local ring  = min(front - far, (high - position.z) * 1.2) - (1 - lumps)
+local dust  = box { position = {4, 4, 0.7}, size = {9, 9, 1.4} } * smoothstep(0, 0.5, ring) * smoothstep(0, 2.2, far) * dusty
 
 fx.camera = camera { eye = {4, -12, 3.36}, target = {4, 4, 3.36}, fov = 31.89, near = 0.1, far = 500 }
 fx.sun    = sun { azimuth = 239, elevation = 34, color = {1, 0.93, 0.82}, strength = 4.6 }
@@ -61,26 +72,41 @@ fx.sky    = sky { zenith = {0.10, 0.24, 0.58}, horizon = {0.50, 0.60, 0.72}, str
 -- What fills space, and what light reaches where in it: sun and sky through the smoke, the fire on the
 -- smoke around it, and all that is scattered on the way.
 local lit = lighting {
-  density    = cover * crust * (smoke + 0.15) * density,
-  emission   = fire(heat * (0.15 + 1.35 * lumps) * kelvin) * flame * brightness * young,
-  albedo     = {0.45, 0.43, 0.41},
+  density    = soot + dust,
+  emission   = fire(heat * (0.15 + 1.35 * lumps) * kelvin * young) * flame * brightness,
+  albedo     = {0.52, 0.52, 0.52},
+  tint       = mix(vec(0.87, 0.83, 0.79), vec(1, 0.84, 0.67), clamp(dust / max(soot + dust, 0.001), 0, 1)),
   anisotropy = 0.2,
   sampling   = "linear",
 }
 
--- What is solid, in the same light: the smoke's shadow lies on it, and so does the fire's glow.
-local scene = geometry { mesh { "data/ground.obj" }, mesh { "data/crates.obj" } }
-local solid = shade { from = {scene, lit}, haze = 0.002 }
+-- Stones and clods of earth are thrown up, fall, and stay where they come to rest.
+local debris = particles {
+  count = 300, burst = 300, burst_time = 0.04, lifetime = 10, seed = 5, position = {4, 4, 0.2}, radius = 0.7,
+  speed = {0, 0, 13}, spread = 75, variation = 0.85, drag = 0.7,
+  gravity = 9.81, collide = position.z, clearance = 0.02, bounce = 0.25, friction = 0.7,
+}
+
+-- What is solid, in the same light: the smoke's shadow lies on it, and so does the fire's glow. The ground
+-- is black where fire lay on it.
+local scene  = geometry { mesh { "data/ground.obj" }, mesh { "data/crates.obj" } }
+local scorch = smoothstep(2.6, 0.8, far + 0.8 * lumps) * curve { {0.05, 0}, {0.6, 2} }
+local ground = shader { "burnt_ground.comp", albedo = scene.albedo, depth = scene.depth, burnt = scorch, lift = 0 }
+local chunks = pieces {
+  debris, mesh { "data/rock.obj" }, scene_albedo = ground.color, from = scene, color = {0.7, 0.48, 0.33},
+  size = 0.06 + 0.26 * particle_random ^ 8, angle = 900 * (particle_random - 0.5) * over_age { {0, 0}, {0.15, 1}, {1, 1} },
+}
+local solid  = shade { from = {chunks, scene, lit}, haze = 0.002 }
 
 -- Samples are moved by half a step at random: what would be rings between them becomes a grain that is
 -- too fine to see.
-local volume = march { from = {lit, scene}, steps = steps, jitter = 0.5, resolution = 0.5 }
+local volume = march { from = {lit, chunks}, steps = steps, jitter = 0.5, resolution = 0.5 }
 
-local picture = over { volume, solid, from = {volume, scene} }
+local picture = over { volume, solid, from = {volume, chunks} }
 local glow    = bloom { bright { picture, threshold = 1.0 }, radius = 0.7 }
 local shown   = final { source = picture, bloom = glow, bloom_intensity = 0.35, exposure_ev = 0.3, tonemap = "aces" }
 
 fx.output = shown.color
 fx.linear = shown.linear
-fx.depth  = scene.depth
+fx.depth  = chunks.depth
 return fx
