@@ -110,10 +110,13 @@ float depth_in(triangle t, ivec2 pixel) {
     return all / dot(parts, 1.0 / vec3(t.corner[0].z, t.corner[1].z, t.corner[2].z));
 }
 
+ivec2 scene_pixel(ivec2 pixel, ivec2 size) {
+    return ivec2((vec2(pixel) + 0.5) / picture * vec2(size));
+}
+
 float scene_depth_in(ivec2 pixel) {
 #if HAS_SCENE_DEPTH
-    vec2 uv = (vec2(pixel) + 0.5) / picture;
-    return texelFetch(scene_depth, ivec2(uv * vec2(textureSize(scene_depth, 0))), 0).r;
+    return texelFetch(scene_depth, scene_pixel(pixel, textureSize(scene_depth, 0)), 0).r;
 #else
     return 1e9;
 #endif
@@ -150,42 +153,61 @@ void main() {
 }
 #endif
 
-#if defined(STAGE_SHOW)
+#if defined(STAGE_LOOK) || defined(STAGE_SHOW)
 layout(local_size_x = 16, local_size_y = 16) in;
 
+#if defined(STAGE_LOOK)
+void look(ivec2 pixel, uint number) {
+    vec4 kind = vec4(0.0), glow = vec4(0.0);
+    if (number != NONE) {
+        triangle t = triangle_of(number);
+        kind = t.surface;
+        glow = t.emission;
+    } else {
+#if HAS_SCENE_ALBEDO && HAS_SCENE_NORMAL
+        kind = vec4(0.0, 1.0, 0.0, 1.0); // matte
+#endif
+#if HAS_SCENE_ALBEDO && HAS_SCENE_SURFACE
+        kind = texelFetch(scene_surface, scene_pixel(pixel, textureSize(scene_surface, 0)), 0);
+#endif
+#if HAS_SCENE_ALBEDO && HAS_SCENE_EMISSION
+        glow = texelFetch(scene_emission, scene_pixel(pixel, textureSize(scene_emission, 0)), 0);
+#endif
+    }
+    imageStore(surface, pixel, kind);
+    imageStore(emission, pixel, glow);
+}
+#else
 // Leaves both buffers empty for the next frame.
-void main() {
-    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-    if (any(greaterThanEqual(pixel, ivec2(picture)))) return;
-    uint at = pixel_number(pixel), number = piece_numbers[at];
+void show(ivec2 pixel, uint at, uint number) {
     float away = number == NONE ? scene_depth_in(pixel) : uintBitsToFloat(piece_depths[at]);
-    vec4 base = vec4(0.0), facing = vec4(0.0), kind = vec4(0.0), glow = vec4(0.0);
+    vec4 base = vec4(0.0), facing = vec4(0.0);
     piece_numbers[at] = NONE;
     piece_depths[at] = NONE;
     if (number != NONE) {
         triangle t = triangle_of(number);
         base = vec4(t.color, 1.0);
         facing = vec4(t.normal, 0.0);
-        kind = t.surface;
-        glow = t.emission;
     } else {
 #if HAS_SCENE_ALBEDO && HAS_SCENE_NORMAL
-        vec2 uv = (vec2(pixel) + 0.5) / picture;
-        base = texelFetch(scene_albedo, ivec2(uv * vec2(textureSize(scene_albedo, 0))), 0);
-        facing = texelFetch(scene_normal, ivec2(uv * vec2(textureSize(scene_normal, 0))), 0);
-        kind = vec4(0.0, 1.0, 0.0, 1.0); // matte
-#endif
-#if HAS_SCENE_ALBEDO && HAS_SCENE_SURFACE
-        kind = texelFetch(scene_surface, ivec2(uv * vec2(textureSize(scene_surface, 0))), 0);
-#endif
-#if HAS_SCENE_ALBEDO && HAS_SCENE_EMISSION
-        glow = texelFetch(scene_emission, ivec2(uv * vec2(textureSize(scene_emission, 0))), 0);
+        base = texelFetch(scene_albedo, scene_pixel(pixel, textureSize(scene_albedo, 0)), 0);
+        facing = texelFetch(scene_normal, scene_pixel(pixel, textureSize(scene_normal, 0)), 0);
 #endif
     }
     imageStore(albedo, pixel, base);
     imageStore(normal, pixel, facing);
-    imageStore(surface, pixel, kind);
-    imageStore(emission, pixel, glow);
     imageStore(depth, pixel, vec4(away));
+}
+#endif
+
+void main() {
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(pixel, ivec2(picture)))) return;
+    uint at = pixel_number(pixel), number = piece_numbers[at];
+#if defined(STAGE_LOOK)
+    look(pixel, number);
+#else
+    show(pixel, at, number);
+#endif
 }
 #endif

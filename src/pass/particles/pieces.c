@@ -1,6 +1,8 @@
 // Pieces: a mesh at each particle, drawn in compute: a thread for each triangle of each piece finds
 // the least depth in its pixels (depth), then the first of the triangles that are as near (number),
-// so that nothing is left to chance; then each pixel tells of its triangle, or of the scene (show).
+// so that nothing is left to chance; then each pixel tells of its triangle, or of the scene: how that
+// reflects and glows (look), and its colour, way and depth (show). In one kernel these are five images,
+// which small devices do not allow.
 #include "base/error.h"
 #include "base/memory.h"
 #include "pass/particles/particles.h"
@@ -20,10 +22,11 @@ enum { MOST_TRIANGLES = 4096 };
         NAME(PieceDepths), NAME(PieceNumbers)
 KERNEL_NAMES(NAMES);
 
-typedef enum pieces_stage { DEPTH, NUMBER, SHOW, STAGES } pieces_stage;
+typedef enum pieces_stage { DEPTH, NUMBER, LOOK, SHOW, STAGES } pieces_stage;
 static const pass_kernel kernels[STAGES] = {
     [DEPTH] = {.define = "STAGE_DEPTH"},
     [NUMBER] = {.define = "STAGE_NUMBER"},
+    [LOOK] = {.define = "STAGE_LOOK"},
     [SHOW] = {.define = "STAGE_SHOW"},
 };
 
@@ -197,8 +200,9 @@ static bool run_triangles(pass *p, pieces_stage stage, uint64_t count) {
     return k && kernel_run_each(k, p->host->device, count);
 }
 
-static bool show(pass *p, const uint32_t size[3]) {
-    kernel *k = use(p, SHOW);
+// A thread for each pixel.
+static bool run_pixels(pass *p, pieces_stage stage, const uint32_t size[3]) {
+    kernel *k = use(p, stage);
     return k && kernel_run(k, p->host->device, size[0], size[1], 1);
 }
 
@@ -220,7 +224,8 @@ static bool pieces_record(pass *p) {
         gpu_buffer_fill(p->host->device, s->numbers, UINT32_MAX);
     }
     s->empty = false; // until they are shown
-    s->empty = run_triangles(p, DEPTH, count) && run_triangles(p, NUMBER, count) && show(p, size);
+    s->empty = run_triangles(p, DEPTH, count) && run_triangles(p, NUMBER, count) &&
+               run_pixels(p, LOOK, size) && run_pixels(p, SHOW, size);
     return s->empty;
 }
 
