@@ -360,9 +360,9 @@ static bool judge_variable(const gate *g, const uint32_t *w, uint32_t length) {
     if (handed && !placed) return err_set("SPIR-V: a variable that is handed on has no location");
     if (handed && located && !fits_locations(g, w, pointer[3]))
         return err_set("what is handed on takes more than %d locations", MOST_LOCATIONS);
-    return !own || is_size(g, pointer[3], SPIRV_MAX_PRIVATE) ||
+    return !own || is_size(g, pointer[3], SPIRV_MAX_VARIABLE) ||
            err_set("a variable of more than %d KiB; a thread may have as much in arrays",
-                   SPIRV_MAX_PRIVATE >> 10);
+                   SPIRV_MAX_VARIABLE >> 10);
 }
 
 static bool judge_value(const gate *g, const uint32_t *w, uint32_t length) {
@@ -372,8 +372,8 @@ static bool judge_value(const gate *g, const uint32_t *w, uint32_t length) {
     uint32_t from = op == SpvOpBitcast && length > 3 && w[3] < g->module.bound ? w[3] : 0;
     if (from && opcode_of(g, g->module.ids[from].type) == SpvOpTypePointer)
         return err_set("SPIR-V: a number made of a pointer");
-    return !g->module.ids[type].array || is_size(g, type, SPIRV_MAX_PRIVATE) ||
-           err_set("an array of more than %d KiB is copied", SPIRV_MAX_PRIVATE >> 10);
+    return !g->module.ids[type].array || is_size(g, type, SPIRV_MAX_VARIABLE) ||
+           err_set("an array of more than %d KiB is copied", SPIRV_MAX_VARIABLE >> 10);
 }
 
 static bool gate_judge(gate *g, const uint32_t *w, uint32_t length) {

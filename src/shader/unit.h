@@ -155,10 +155,13 @@ typedef struct spirv {
 } spirv;
 
 enum {
-    GLSL_MAX_OPERATORS = 20000,   // per statement; a table of 5000 negative numbers has 10000
-    SPIRV_MAX_SIZE = 16 << 20,    // bytes
-    SPIRV_MAX_EXPANDED = 4 << 20, // words, every call inlined
-    SPIRV_MAX_PRIVATE = 32 << 10, // bytes of a thread's arrays, every call inlined
+    GLSL_MAX_OPERATORS = 20000,    // per statement; a table of 5000 negative numbers has 10000
+    SPIRV_MAX_SIZE = 16 << 20,     // bytes
+    SPIRV_MAX_EXPANDED = 4 << 20,  // words, every call inlined
+    SPIRV_MAX_VARIABLE = 32 << 10, // bytes
+    // Bytes of a thread's arrays, every call inlined. A step of a lattice that carries three
+    // scalars in 27 directions counts 48,840.
+    SPIRV_MAX_PRIVATE = 48 << 10,
 };
 
 typedef enum glsl_outcome {

@@ -45,10 +45,10 @@ static const hostile texts[] = {
      "a variable of more than 32 KiB"},
     {"float t[8193];\n", "t[int(c.x)] = c.x; c = vec4(t[int(c.y)]);",
      "a variable of more than 32 KiB"},
-    {"float f(float x) { float t[1025]; for (int i = 0; i < 1025; i++) t[i] = x; "
+    {"float f(float x) { float t[1600]; for (int i = 0; i < 1600; i++) t[i] = x; "
      "return t[int(x)]; }\n",
      "c = vec4(f(1) + f(2) + f(3) + f(4) + f(5) + f(6) + f(7) + f(8));",
-     "arrays of more than 32 KiB"},
+     "arrays of more than 48 KiB"},
 };
 
 static void write_text(place *p, const hostile *h) {

@@ -2,6 +2,7 @@
 #include "base_test.h"
 #include "sim/lbm_impl.h"
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define COUNT_ONE(i, x, y, z) +2
@@ -185,6 +186,34 @@ static void a_lattice_that_cannot_be_is_refused(void **state) {
            "BGK");
 }
 
+// The shader that holds most, as cards get it: a thread's arrays are limited (SPIRV_MAX_PRIVATE).
+static void all_that_a_step_can_do_compiles_for_a_card(void **state) {
+    const char *source = getenv("ROIL_SOURCE_DIR");
+    arena memory = {0};
+    (void)state;
+    if (!source) fail_msg("set ROIL_SOURCE_DIR to the root of the source");
+    shader_library *library = shader_library_create(
+        &(shader_library_desc){.shader_root = arena_format(&memory, "%s/shaders", source)});
+    for (int half = 0; half < 2; half++) {
+        lbm *l = lbm_create(&memory, &(lbm_desc){.size = {32, 32, 32},
+                                                 .set = LBM_D3Q27,
+                                                 .scalar_set = LBM_SCALAR_D3Q27,
+                                                 .collision = LBM_CENTRAL_MOMENTS,
+                                                 .precision = half ? LBM_F16 : LBM_F32,
+                                                 .faces = {LBM_INFLOW, LBM_OPEN, LBM_SLIP, LBM_SLIP,
+                                                           LBM_WALL, LBM_OPEN},
+                                                 .scalars = LBM_MAX_SCALARS,
+                                                 .subgrid = true,
+                                                 .force = true,
+                                                 .outflow = true,
+                                                 .bodies = true});
+        if (!l || !lbm_build(l, NULL, library, NULL)) fail_msg("%s", err_get());
+        lbm_destroy(l, NULL);
+    }
+    shader_library_destroy(library);
+    arena_free(&memory);
+}
+
 int main(void) {
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_lists_are_as_long_as_their_names_say),
@@ -194,6 +223,7 @@ int main(void) {
         cmocka_unit_test(a_state_fits_into_what_a_device_binds),
         cmocka_unit_test(what_does_not_fit_is_refused_with_numbers),
         cmocka_unit_test(a_lattice_that_cannot_be_is_refused),
+        cmocka_unit_test(all_that_a_step_can_do_compiles_for_a_card),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -204,18 +204,28 @@ void give_scalar(const int held) {
 
 #if MEETS
 // `wave`: a step of the waves at open faces, too, which is done once.
+// In full precision memory holds what is computed with: a copy would count among the arrays of a thread, which are
+// limited.
 void meet_air(const bool wave) {
+#if LBM_HALF
     lbm_float f[LBM_Q];
     lbm_unpack_air(air, LBM_AIR_SCALE, f);
     lbm_meet_air(at, site, wave, f);
     lbm_pack_air(f, LBM_AIR_SCALE, air);
+#else
+    lbm_meet_air(at, site, wave, air);
+#endif
 }
 
 void meet_scalar(const int s, const int held) {
+#if LBM_HALF
     lbm_float g[LBM_SCALAR_Q];
     lbm_unpack_scalar(carried[held], LBM_SCALAR_SCALE, g);
     lbm_meet_scalar(s, at, site, ambient[s], g);
     lbm_pack_scalar(g, LBM_SCALAR_SCALE, carried[held]);
+#else
+    lbm_meet_scalar(s, at, site, ambient[s], carried[held]);
+#endif
 }
 #endif
 
@@ -243,8 +253,12 @@ void collide_air(out lbm_vec u, out lbm_float eddies) {
 }
 
 void collide_scalar(const int s, const int held, lbm_vec u, lbm_float eddies) {
+#if LBM_HALF
     lbm_float g[LBM_SCALAR_Q];
     lbm_unpack_scalar(carried[held], LBM_SCALAR_SCALE, g);
+#else
+#define g carried[held]
+#endif
     lbm_collide_scalar(value[s], u,
                        1.0 / (scalar_tau[s] + eddies * (1.0 / (3.0 * SCHMIDT * LBM_SCALAR_SPEED))),
                        1.0 - decay[s], ambient[s], g);
@@ -258,7 +272,11 @@ void collide_scalar(const int s, const int held, lbm_vec u, lbm_float eddies) {
 #endif
     for (int i = 0; i < LBM_SCALAR_Q; i++) g[i] *= 1.0 + grows;
 #endif
+#if LBM_HALF
     lbm_pack_scalar(g, LBM_SCALAR_SCALE, carried[held]);
+#else
+#undef g
+#endif
 }
 
 // In these lanes what arrived stays.
