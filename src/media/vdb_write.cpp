@@ -82,7 +82,8 @@ template <class Grid> struct leaves {
     }
 };
 
-// The library makes the empty grid: a constructor here would compile all that a grid can do once more.
+// The library makes the empty grid: a constructor here would compile all that a grid can do once
+// more.
 template <class Grid> GridBase::Ptr to_grid(const vdb_write_grid &w) {
     leaves<Grid> all(w);
     GridBase::Ptr grid = GridBase::createGrid(Grid::gridType());

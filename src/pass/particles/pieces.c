@@ -1,8 +1,8 @@
 // Pieces: a mesh at each particle, drawn in compute: a thread for each triangle of each piece finds
 // the least depth in its pixels (depth), then the first of the triangles that are as near (number),
-// so that nothing is left to chance; then each pixel tells of its triangle, or of the scene: how that
-// reflects and glows (look), and its colour, way and depth (show). In one kernel these are five images,
-// which small devices do not allow.
+// so that nothing is left to chance; then each pixel tells of its triangle, or of the scene: how
+// that reflects and glows (look), and its colour, way and depth (show). In one kernel these are
+// five images, which small devices do not allow.
 #include "base/error.h"
 #include "base/memory.h"
 #include "pass/particles/particles.h"
