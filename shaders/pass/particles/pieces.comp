@@ -1,7 +1,7 @@
 // Particles as small solid bodies: a mesh stands at each of them, before and behind the surfaces of a scene.
 //
 // pieces { shards, mesh { "data/ball.obj" }, from = scene } gives what `geometry` gives, the scene and
-// the pieces: shade { from = drawn } lights both. Triangles are drawn whole, each by a thread, in one
+// the pieces: shade { from = drawn } lights both. Triangles are drawn whole, each by a few threads, in one
 // colour and flat: made for many small ones. They throw shadows by way of `deposit` only.
 //@ option turn = random {random, along} : random: about an axis of their own; along: with x along their way
 //@ field float size = 1 : metres a unit of the mesh
@@ -129,14 +129,17 @@ uint pixel_number(ivec2 pixel) {
 #if defined(STAGE_DEPTH) || defined(STAGE_NUMBER)
 layout(local_size_x = 256) in;
 
+// THREADS of them share a triangle's rows, so that one near the camera does not keep all others waiting.
 void main() {
-    uint number = 256u * (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) + gl_LocalInvocationIndex;
+    uint thread = 256u * (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) + gl_LocalInvocationIndex;
+    uint number = thread / uint(THREADS);
+    int row = int(thread % uint(THREADS));
     triangle t = triangle_of(number);
     if (!t.seen) return;
     vec2 low = min(t.corner[0].xy, min(t.corner[1].xy, t.corner[2].xy));
     vec2 high = max(t.corner[0].xy, max(t.corner[1].xy, t.corner[2].xy));
     ivec2 begin = ivec2(max(floor(low), vec2(0.0))), end = ivec2(min(ceil(high), picture));
-    for (int y = begin.y; y < end.y; y++)
+    for (int y = begin.y + row; y < end.y; y += THREADS)
         for (int x = begin.x; x < end.x; x++) {
             float away = depth_in(t, ivec2(x, y));
             uint pixel = pixel_number(ivec2(x, y));
@@ -148,7 +151,7 @@ void main() {
 #endif
         }
 #if defined(STAGE_DEPTH)
-    count_triangles(1);
+    if (row == 0) count_triangles(1);
 #endif
 }
 #endif

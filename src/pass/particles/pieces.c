@@ -1,4 +1,4 @@
-// Pieces: a mesh at each particle, drawn in compute: a thread for each triangle of each piece finds
+// Pieces: a mesh at each particle, drawn in compute: threads for each triangle of each piece find
 // the least depth in its pixels (depth), then the first of the triangles that are as near (number),
 // so that nothing is left to chance; then each pixel tells of its triangle, or of the scene: how
 // that reflects and glows (look), and its colour, way and depth (show). In one kernel these are
@@ -72,9 +72,14 @@ static bool pieces_declare(pass *p) {
 
 // ---- building ---------------------------------------------------------------------------------
 
+static uint32_t threads_of_triangle(const pass *p) {
+    return gpu_get_profile(p->host->device)->splats_gather ? 8 : 1;
+}
+
 static bool pieces_defines(pass *p, size_t index, pass_defines *out) {
     (void)index;
     pass_define_number(p, out, "TRIANGLES", state_of(p)->triangle_count);
+    pass_define_number(p, out, "THREADS", threads_of_triangle(p));
     return true;
 }
 
@@ -194,10 +199,9 @@ static kernel *use(pass *p, pieces_stage stage) {
     return k;
 }
 
-// A thread for each triangle.
 static bool run_triangles(pass *p, pieces_stage stage, uint64_t count) {
     kernel *k = use(p, stage);
-    return k && kernel_run_each(k, p->host->device, count);
+    return k && kernel_run_each(k, p->host->device, count * threads_of_triangle(p));
 }
 
 // A thread for each pixel.
@@ -212,9 +216,10 @@ static bool pieces_record(pass *p) {
     uint64_t count = (uint64_t)pass_particles_used(p->particles) * s->triangle_count;
     picture_size(p, size);
     const uint64_t bytes = pixels_bytes(p);
-    if (count >= UINT32_MAX)
-        return err_set("%s: %llu triangles; at most 4294967294 are drawn", p->label,
-                       (unsigned long long)count);
+    const uint64_t most = UINT32_MAX / threads_of_triangle(p) - 1;
+    if (count > most)
+        return err_set("%s: %llu triangles; at most %llu are drawn", p->label,
+                       (unsigned long long)count, (unsigned long long)most);
     if (!pass_prepare(p) || !write_looks(p) ||
         !make_buffer(p, &s->depths, "depths of pieces", bytes) ||
         !make_buffer(p, &s->numbers, "numbers of pieces", bytes))
