@@ -11,6 +11,9 @@ local burning = param { "burning", 1.5, min = 0, max = 10, unit = "s", help = "b
 local smoke   = param { "smoke", 8700, min = 0, max = 20000, unit = "m^2/kg", help = "what 1 kg of soot hides" }
 local glow    = param { "glow", 1.4, min = 0, max = 50, help = "factor of the fire's light" }
 
+-- A film is large: its fire is drawn at half of its size.
+local film = quality:get() == "film"
+
 local cells = ({ draft = {64, 64, 80}, shot = {128, 128, 160}, film = {192, 192, 256} })[quality:get()]
 local fire = pyro {
   size = cells, voxel_size = 2 / cells[1], fuel = "wood", speed = 6, warm_up = burning:get(),
@@ -46,7 +49,7 @@ local lit = lighting {
 
 local scene  = geometry { mesh { "data/ground.obj", color = {1.8, 1.7, 1.6} }, logs }
 local solid  = shade { from = {scene, lit}, haze = 0.002 }
-local volume = march { from = {lit, scene}, steps = 160, jitter = 0.5 }
+local volume = march { from = {lit, scene}, steps = 160, jitter = 0.5, resolution = film and 0.5 or 1 }
 
 local picture = over { volume, solid, from = {volume, scene} }
 local blooms  = bloom { bright { picture, threshold = 1.0 }, radius = 0.7 }

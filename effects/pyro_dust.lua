@@ -12,6 +12,9 @@ local smoke   = param { "smoke", 900, min = 0, max = 20000, unit = "m^2/kg", hel
 local haze    = param { "haze", 6, min = 0, max = 100, unit = "m^2/kg", help = "what 1 kg of dust hides" }
 local glow    = param { "glow", 1.6, min = 0, max = 50, help = "factor of the fire's light" }
 
+-- A film is large: its fire is drawn at half of its size.
+local film = quality:get() == "film"
+
 -- A box of 10 x 20 x 8 m round the room; walls are two cells of the velocity thick.
 local cells = ({ draft = {80, 160, 64}, shot = {160, 320, 128}, film = {240, 480, 192} })[quality:get()]
 local fire = pyro {
@@ -48,7 +51,7 @@ local lit = lighting {
 
 local scene  = geometry { mesh { "data/ground.obj" }, room }
 local solid  = shade { from = {scene, lit}, haze = 0.002 }
-local volume = march { from = {lit, scene}, steps = 192, jitter = 0.5 }
+local volume = march { from = {lit, scene}, steps = 192, jitter = 0.5, resolution = film and 0.5 or 1 }
 
 local picture = over { volume, solid, from = {volume, scene} }
 local blooms  = bloom { bright { picture, threshold = 1.0 }, radius = 0.7 }

@@ -10,9 +10,12 @@ local jet     = param { "jet", 24, min = 0, max = 40, unit = "m/s", help = "spee
 local smoke   = param { "smoke", 8700, min = 0, max = 20000, unit = "m^2/kg", help = "what 1 kg of soot hides" }
 local glow    = param { "glow", 1.4, min = 0, max = 50, help = "factor of the fire's light" }
 
+-- A film is large: its fire is drawn at half of its size, and gas may cross more of its finer cells in a step.
+local film = quality:get() == "film"
+
 local cells = ({ draft = {96, 64, 80}, shot = {192, 128, 160}, film = {320, 224, 256} })[quality:get()]
 local fire = pyro {
-  size = cells, voxel_size = 9 / cells[1], fuel = "petrol", speed = 24, velocity_cells = "half", density = "variable",
+  size = cells, voxel_size = 9 / cells[1], fuel = "petrol", speed = film and 17 or 24, velocity_cells = "half", density = "variable",
   burn_time = 0.05, cooling = 1800, vorticity = 3, soot_yield = 0.02,
 }
 
@@ -38,7 +41,7 @@ local lit = lighting {
 
 local scene  = geometry { mesh { "data/ground.obj" }, wall }
 local solid  = shade { from = {scene, lit}, haze = 0.002 }
-local volume = march { from = {lit, scene}, steps = 160, jitter = 0.5 }
+local volume = march { from = {lit, scene}, steps = 160, jitter = 0.5, resolution = film and 0.5 or 1 }
 
 local picture = over { volume, solid, from = {volume, scene} }
 local blooms  = bloom { bright { picture, threshold = 1.0 }, radius = 0.7 }
