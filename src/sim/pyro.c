@@ -108,6 +108,8 @@ static void define_all(pyro *p) {
     define(p, "PYRO_VARIABLE", p->desc.variable_density);
     define(p, "PYRO_WEIGHED", pyro_is_weighed(p));
     define(p, "PYRO_CLOSED", pyro_is_closed(&p->desc));
+    const uint32_t *coarsest = p->levels[p->level_count - 1].size;
+    define(p, "PYRO_COARSEST_CELLS", coarsest[0] * coarsest[1] * coarsest[2]);
 }
 
 size_t pyro_defines(const pyro *p, shader_define out[PYRO_MAX_DEFINES]) {

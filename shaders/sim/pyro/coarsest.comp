@@ -32,6 +32,45 @@ float mean_of_right() {
 #endif
 }
 
+#if PYRO_COARSEST_CELLS <= 2048
+// A thread's cells stay with it, and their pressure lies in shared memory: a sweep waits for nothing else.
+#define CELLS ((PYRO_COARSEST_CELLS + 255) / 256)
+shared float found[PYRO_COARSEST_CELLS];
+
+void main() {
+    level_near near[CELLS];
+    float right[CELLS];
+    int colours[CELLS]; // 2: no cell
+    ivec3 size = LEVEL_SIZE;
+    float mean = mean_of_right();
+    for (int k = 0; k < CELLS; k++) {
+        int i = int(gl_LocalInvocationIndex) + 256 * k;
+        colours[k] = 2;
+        if (i >= PYRO_COARSEST_CELLS) continue;
+        ivec3 c = ivec3(i % size.x, i / size.x % size.y, i / (size.x * size.y));
+        level_near n = level_near_of(c);
+        LEVEL_WEIGH(n)
+        near[k] = n;
+        right[k] = coarse_right[level_first + i] - mean;
+        found[i] = coarse_pressure[level_first + i];
+        if (n.all > 0.0) colours[k] = (c.x + c.y + c.z) & 1;
+    }
+    barrier();
+#undef LEVEL_FIRST
+#define LEVEL_FIRST 0 // in shared memory
+    for (int half_ = 0; half_ < 2 * sweeps; half_++) {
+        for (int k = 0; k < CELLS; k++) {
+            if (colours[k] != (half_ & 1)) continue;
+            int i = int(gl_LocalInvocationIndex) + 256 * k;
+            float own = found[i], around;
+            LEVEL_SUM(found, near[k], around)
+            found[i] = own + relaxation * ((around - right[k]) / near[k].all - own);
+        }
+        barrier();
+    }
+    for (int i = int(gl_LocalInvocationIndex); i < PYRO_COARSEST_CELLS; i += 256) coarse_pressure[level_first + i] = found[i];
+}
+#else
 void main() {
     ivec3 size = LEVEL_SIZE;
     int count = size.x * size.y * size.z;
@@ -52,3 +91,4 @@ void main() {
         barrier();
     }
 }
+#endif
