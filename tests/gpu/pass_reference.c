@@ -1,4 +1,5 @@
 // The path tracer against what is known without one.
+#include "long_test.h"
 #include "pass_test.h"
 #include "scene/material.h"
 
@@ -123,6 +124,7 @@ static void coloured_extinction_keeps_the_furnace_white(void **state) {
 }
 
 static void sharp_phase_functions_keep_the_furnace_white(void **state) {
+    if (!sim_long_tests("a furnace of sharp phase functions")) return;
     heat(*state, soft_ball, (furnace){.extinction = {1, 1, 1}, .anisotropy = 0.8f});
     heat(*state, soft_ball,
          (furnace){.extinction = {1, 1, 1}, .anisotropy = 0.8f, .phase = "schlick"});
@@ -131,6 +133,7 @@ static void sharp_phase_functions_keep_the_furnace_white(void **state) {
 }
 
 static void bounds_that_are_too_low_cost_noise_only(void **state) {
+    if (!sim_long_tests("bounds that are too low")) return;
     heat(*state, soft_ball, (furnace){.extinction = {1, 1, 1}, .bound = 0.9f});
     heat(*state, soft_ball, (furnace){.extinction = {0.3f, 0.3f, 0.3f}, .bound = 0.75f});
     heat(*state, soft_ball, (furnace){.extinction = {1, 0.5f, 1}, .bound = 4});

@@ -30,7 +30,7 @@ from lib.program import BINARY, GROUND, PROGRAM, PUFF, Case, main
 LIBRARY = os.path.join(BINARY, "libfault.so")
 LIBRARIES = "liblua,libpng,libjansson"  # whose allocations fail beside the program's own
 LIMIT = 120  # seconds of a run
-SAMPLE = 3  # cases of each scenario, class and way in a run of the tests
+SAMPLE = 2  # cases of each scenario, class and way in a run of the tests
 DEPTHS = "8,4"
 REPORT = struct.Struct("<6Q64s")  # as in fault.c, and before each path
 PATH = struct.Struct("<3Q")
