@@ -8,7 +8,6 @@
 #include "base/file.h"
 #include "base/log.h"
 #include <stdio.h>
-#include <string.h>
 
 static const float WIDTH = 260, HEIGHT = 320; // units
 

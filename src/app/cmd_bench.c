@@ -9,7 +9,6 @@
 #include "bench/sweep.h"
 #include <popt.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { OPTION_SIZE = 1, OPTION_ONLY, OPTION_SHARD };

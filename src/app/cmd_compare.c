@@ -11,7 +11,6 @@
 #include <math.h>
 #include <popt.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 typedef struct compare_job {

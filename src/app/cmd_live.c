@@ -19,7 +19,6 @@
 #include <math.h>
 #include <popt.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 

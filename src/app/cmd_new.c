@@ -7,7 +7,6 @@
 #include <ctype.h>
 #include <dirent.h>
 #include <popt.h>
-#include <stdlib.h>
 #include <string.h>
 
 static const char settings_of_editors[] = "{\n"

@@ -5,7 +5,6 @@
 #include "base/memory.h"
 #include "base/statistics.h"
 #include <jansson.h>
-#include <stdlib.h>
 #include <string.h>
 
 void pulse_ask(pulse *p, double when) {

@@ -3,7 +3,6 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include <signal.h>
-#include <string.h>
 #include <unistd.h>
 
 static arguments list_arguments(const live *l, const app_device *device, const char *why) {

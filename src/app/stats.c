@@ -11,7 +11,6 @@
 #include <jansson.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { MAX_PASSES = 256, MAX_COUNTERS = 64, MAX_READOUTS = 64 };

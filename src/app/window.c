@@ -6,7 +6,6 @@
 #include "base/str.h"
 #include <GLFW/glfw3.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 static const float SHARE = 0.85f; // of the display, at first
 enum { WIDTH = 1440, HEIGHT = 900, MIN_SEEN = 80 };

@@ -1,5 +1,4 @@
 #include "base/content_cache.h"
-#include "base/file.h"
 #include "base/hash.h"
 #include "base/memory.h"
 #include <pthread.h>

@@ -4,7 +4,6 @@
 #include "base/str.h"
 #include <ctype.h>
 #include <math.h>
-#include <stdlib.h>
 #include <strings.h>
 
 typedef struct list {

@@ -1,7 +1,6 @@
 // A map from (pointer, number) to a number, for walks over expression graphs that must visit shared
 // nodes once. A zero-initialised map is empty. Free it with map_free.
 #pragma once
-#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 

@@ -7,7 +7,6 @@
 #include "bench/results.h"
 #include <inttypes.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 // ---- names of columns -------------------------------------------------------------------------

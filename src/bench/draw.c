@@ -5,7 +5,6 @@
 #include "base/memory.h"
 #include "bench/run_parts.h"
 #include <stdio.h>
-#include <string.h>
 #include <time.h>
 #include <unistd.h>
 

@@ -5,7 +5,6 @@
 #include "media/compare.h"
 #include "media/png.h"
 #include <math.h>
-#include <string.h>
 
 enum { SMALL_WIDTH = 320 };
 static const double PIXELS_PER_DEGREE = 67; // as roil_compare has it

@@ -5,7 +5,6 @@
 #include "base/words.h"
 #include "bench/tune.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 // What the reference has: the best value, or the effect's own, as for the octaves of a noise, which

@@ -1,6 +1,5 @@
 // Controls of passes: uniforms ("march.steps"), options ("march.mode"), "march.resolution".
 #include "effect/effect_impl.h"
-#include <string.h>
 
 static void add(effect *e, effect_control_kind kind, size_t index, size_t i,
                 const value_desc *desc) {

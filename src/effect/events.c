@@ -6,7 +6,6 @@
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 static const char form[] = "SECONDS click X Y, or SECONDS key NAME, as 2.5 click 0.4 0.6";

@@ -5,7 +5,6 @@
 #include "base/str.h"
 #include <ctype.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 static const char key_effect[] = "roil:effect", key_frame[] = "roil:frame";

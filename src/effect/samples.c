@@ -4,7 +4,6 @@
 #include "base/memory.h"
 #include "effect/effect_impl.h"
 #include <math.h>
-#include <string.h>
 
 enum { ANTIALIAS_PLACES = 16 }; // in a pixel, from frame to frame
 

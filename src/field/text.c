@@ -6,7 +6,6 @@
 #include "field/curve.h"
 #include "field/palette.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 static void skip_blanks(const char **at) {

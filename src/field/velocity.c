@@ -7,7 +7,6 @@
 #include "base/memory.h"
 #include "field/compose.h"
 #include "field/kinds.h"
-#include <string.h>
 
 enum { MOST_VISITS = 20000 }; // of nodes: shared ones are visited again
 

@@ -10,7 +10,6 @@
 // SPIR-V is rewritten word by word; a module with anything unforeseen is left as it is.
 #include "gpu/spirv.h"
 #include "gpu/vk.h"
-#include <string.h>
 
 typedef struct block { // a variable of storage class Uniform
     uint32_t id, type; // and of what it points to

@@ -7,7 +7,6 @@
 #include "pass/pass_impl.h"
 #include "pass/ranges.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 typedef enum source_kind {

@@ -5,7 +5,6 @@
 #include "base/words.h"
 #include "pass/pass_impl.h"
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 pass *pass_create(pass_host *host, const pass_type *type, const char *shader, const char *label) {

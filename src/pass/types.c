@@ -1,5 +1,4 @@
 // The built-in pass types. A type without hooks is its shader and nothing else.
-#include "base/error.h"
 #include "base/memory.h"
 #include "base/words.h"
 #include "pass/pass_impl.h"

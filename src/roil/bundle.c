@@ -5,7 +5,6 @@
 #include "base/memory.h"
 #include "base/str.h"
 #include "roil/roil_impl.h"
-#include "script/script.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <ftw.h>

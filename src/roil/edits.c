@@ -6,7 +6,6 @@
 #include "base/words.h"
 #include "roil/edits_impl.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { SOURCE_MAX = 4 << 20, MOST_CALLS = 16 };

@@ -6,7 +6,6 @@
 #include "roil/sheet.h"
 #include <assert.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 char *info_finish_json(json_t *root) {

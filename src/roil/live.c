@@ -3,7 +3,6 @@
 #include "base/clock.h"
 #include "base/file.h"
 #include "base/memory.h"
-#include <stdlib.h>
 #include <string.h>
 
 static const double LAST_SECONDS = 1; // that a builder is waited for in the end

@@ -5,7 +5,6 @@
 // channel counts is the sign here. Unity: VFX Graph, VFXCommonOutput.hlsl; Houdini: the flipbook
 // shader MotionVector.shader of 2018, which adds and turns the green channel; Unreal and Godot have
 // uv from the top, and Unreal reads normals as DirectX does.
-#include "base/error.h"
 #include "base/memory.h"
 #include "base/words.h"
 #include "roil/sheet.h"

@@ -1,6 +1,5 @@
 // Templates as files in the folders of an effect and of the library. For src/roil*.c only.
 #pragma once
-#include "media/picture.h"
 #include "roil/roil_impl.h"
 
 // Returns the path of a new template. False with a message when `name` is not valid or exists.

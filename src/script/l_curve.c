@@ -1,6 +1,5 @@
 // curve { {0, 1}, {0.5, 3}, shape = "cubic", period = 2 }: keys of time (s) and value.
 #include "script/binding.h"
-#include <string.h>
 
 enum {
     KEYS_MAX = 4096,

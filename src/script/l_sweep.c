@@ -3,7 +3,6 @@
 #include "base/words.h"
 #include "script/binding.h"
 #include "script/sweep_parts.h"
-#include <stdlib.h>
 #include <string.h>
 
 enum {

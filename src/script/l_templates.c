@@ -2,7 +2,6 @@
 // that are put into the flow of slices, or into simulated air, for a while, again and again.
 #include "pass/slices/slices_templates.h"
 #include "script/binding.h"
-#include <string.h>
 
 const char templates_example[] = "image \"templates/source.exr\", count = 40";
 

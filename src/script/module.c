@@ -5,7 +5,6 @@
 #include "script/vm.h"
 #include <ctype.h>
 #include <stdio.h>
-#include <string.h>
 
 // Accepts words of letters, digits, '_' and '-', separated by '.' or '/'; so no "..", no absolute
 // path.

@@ -5,7 +5,6 @@
 #include "script/binding.h"
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 enum {
     MEMORY_LIMIT = 256 << 20,

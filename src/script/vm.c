@@ -19,7 +19,6 @@
 // Invariant: once a limit was hit (`stop`), the hook fails at every instruction, so no pcall of
 // the script can go on; it ends when the outermost vm_call returns.
 #include "script/vm.h"
-#include "base/arena.h"
 #include "base/budget.h"
 #include "base/clock.h"
 #include "base/file.h"

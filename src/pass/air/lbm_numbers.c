@@ -2,7 +2,6 @@
 // the lattice.
 #include "pass/air/lbm_parts.h"
 #include <math.h>
-#include <string.h>
 
 // The solver's own limit: at 1/2 exactly nothing would ever settle.
 static const double least_tau = 0.5 + 1e-5;

@@ -2,7 +2,6 @@
 #include "base/memory.h"
 #include "pass/air/lbm_parts.h"
 #include <math.h>
-#include <string.h>
 
 // Of the air's mass, either way: more is not air that was blown or drawn, but a solver that fails.
 static const float spoilt_drift = 0.5f;

@@ -5,7 +5,6 @@
 #include "base/error.h"
 #include "base/memory.h"
 #include "pass/light/point_lights_parts.h"
-#include <string.h>
 
 enum {
     TILE = 16,   // pixels, as in lib/point_lights.glsl

@@ -4,7 +4,6 @@
 #include "base/memory.h"
 #include "pass/particles/particles_parts.h"
 #include <math.h>
-#include <string.h>
 
 enum { BRIEF = 64 }; // of what a submit may move, in a window: one part of so many
 

@@ -6,7 +6,6 @@
 // out unless something else reads it. Mode gaussian stays in one size (bloom_gaussian.c).
 #include "base/memory.h"
 #include "pass/picture/bloom_parts.h"
-#include <string.h>
 
 enum { TAIL_ROOM = 4096, TAIL_BYTES = 8 }; // texels in shared memory, of one (bloom/tail.glsl)
 

@@ -2,7 +2,6 @@
 #include "base/memory.h"
 #include "pass/pass_impl.h"
 #include "scene/material.h"
-#include <string.h>
 
 static bool kinds_are_matte(scene_mesh *const *meshes, size_t count) {
     for (size_t i = 0; i < count; i++)

@@ -1,7 +1,6 @@
 // Whether maps are still what they were: where neither a light, nor what stands before it, nor the
 // camera has moved, they need not be drawn again.
 #include "pass/surfaces/shadow_maps_parts.h"
-#include <string.h>
 
 static void add(hash128 *sum, const void *data, size_t size) {
     *sum = hash_combine(*sum, hash_bytes(data, size));
