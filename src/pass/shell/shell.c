@@ -1,11 +1,44 @@
 // Shells: what of each is the same everywhere is found first (gather), then the surfaces, by a ray
-// for each pixel, or by vertices that are pushed out and drawn (shell_mesh.c).
+// for each pixel, or by vertices that are pushed out and drawn. Drawn ones are laid over each other
+// from the farthest centre to the nearest, of each the far side first, so that what shines through
+// one is behind it.
 #include "pass/shell/shell.h"
 #include "base/error.h"
 #include "base/memory.h"
 #include "field/range.h"
-#include "pass/shell/shell_parts.h"
+#include "pass/pass_impl.h"
 #include <string.h>
+
+enum { SHELL_RECORD = 48, SHELL_VERTEX = 16 }; // bytes, as shell/surface.glsl has them
+static const float SHELL_LEAST = -0.95f;       // of the displacement: the sphere stays one
+enum { FACES = 6, CORNERS_OF_SQUARE = 6 };     // a square is two triangles
+
+typedef enum shell_stage {
+    SHELL_GATHER,
+    SHELL_RAYS,
+    SHELL_VERTICES, // of what is drawn, as those that follow
+    SHELL_DRAW,
+    SHELL_FRONT,
+    SHELL_STAGES
+} shell_stage;
+
+#define SHELL_NAMES(NAME)                                                                          \
+    NAME(mode), NAME(corners), NAME(sides), NAME(displacement), NAME(life), NAME(reach),           \
+        NAME(image), NAME(front), NAME(drawn_front), NAME(shells), NAME(shell_count),              \
+        NAME(bounds), NAME(picture), NAME(shell_at), NAME(far_side), NAME(ShellRecords),           \
+        NAME(ShellVertices)
+enum { SHELL_NAMES(KERNEL_NAME_ID) };
+
+typedef struct shell_state {
+    const scene_explosions *list;     // NULL: one from time 0 on
+    bool drawn;                       // as meshes,
+    bool both_sides;                  // of them
+    uint32_t corners;                 // along a side of the cube that a mesh is made of
+    uint32_t count;                   // of the frame being recorded,
+    float places[PASS_SHELL_MOST][3]; // and where they are
+    gpu_buffer *records, *vertices;
+    graph_image z, drawn_front; // of what is drawn
+} shell_state;
 
 static const char *const names[] = {SHELL_NAMES(KERNEL_NAME_TEXT)};
 static const pass_kernel kernels[SHELL_STAGES] = {
@@ -16,7 +49,7 @@ static const pass_kernel kernels[SHELL_STAGES] = {
     [SHELL_FRONT] = {.define = "STAGE_FRONT"},
 };
 
-shell_state *shell_state_of(pass *p) {
+static shell_state *shell_state_of(pass *p) {
     if (!p->state) p->state = arena_alloc(p->host->memory, sizeof(shell_state));
     return p->state;
 }
@@ -26,6 +59,25 @@ void pass_shell_open(pass *p, const scene_explosions *list) {
 }
 
 // ---- declaring and building -------------------------------------------------------------------
+
+static uint32_t vertex_count(const shell_state *s) { // that are pushed out
+    return FACES * s->corners * s->corners;
+}
+
+static uint32_t drawn_count(const shell_state *s) {
+    return FACES * CORNERS_OF_SQUARE * (s->corners - 1) * (s->corners - 1);
+}
+
+static bool shell_declare_mesh(pass *p) {
+    shell_state *s = shell_state_of(p);
+    graph_image *image = pass_image(p, N_image);
+    *image = pass_add_target(p, "image", p->formats[p->names[N_image].image]);
+    s->z = pass_add_target(p, "z", GPU_D32F);
+    s->drawn_front = pass_add_target(p, "drawn_front", GPU_R32F);
+    const graph_image own[] = {s->z, s->drawn_front};
+    return image->id && s->z.id && s->drawn_front.id && pass_declare_images(p) &&
+           pass_add_to_graph_with(p, own, COUNT_OF(own));
+}
 
 static bool shell_declare(pass *p) {
     shell_state *s = shell_state_of(p);
@@ -38,6 +90,20 @@ static bool shell_declare(pass *p) {
 static bool shell_defines(pass *p, size_t index, pass_defines *out) {
     pass_define_number(p, out, "SHELL_CORNERS", shell_state_of(p)->corners);
     return index == SHELL_GATHER || (index >= SHELL_VERTICES) == shell_state_of(p)->drawn;
+}
+
+static void shell_target(const pass *p, size_t index, gpu_graphics_desc *out) {
+    (void)index;
+    *out = (gpu_graphics_desc){
+        .colors = {p->formats[p->names[N_image].image], p->formats[p->names[N_front].image]},
+        .depth = GPU_D32F,
+        .blend = true,
+    };
+}
+
+static uint64_t shell_vertices_bytes(const shell_state *s) {
+    const uint64_t most = s->list ? PASS_SHELL_MOST : 1;
+    return s->drawn ? most * vertex_count(s) * SHELL_VERTEX : 0;
 }
 
 // For as many shells as there may ever be, so that frames take none.
@@ -105,7 +171,7 @@ static bool shell_update(pass *p) {
     return true;
 }
 
-kernel *shell_use(pass *p, shell_stage stage) {
+static kernel *shell_use(pass *p, shell_stage stage) {
     const shell_state *s = shell_state_of(p);
     kernel *k = pass_use(p, stage);
     if (!k) return NULL;
@@ -116,9 +182,72 @@ kernel *shell_use(pass *p, shell_stage stage) {
     return k;
 }
 
-bool shell_run(pass *p, shell_stage stage, uint32_t x, uint32_t y) {
+static bool shell_run(pass *p, shell_stage stage, uint32_t x, uint32_t y) {
     kernel *k = shell_use(p, stage);
     return k && kernel_run(k, p->host->device, x, y, 1);
+}
+
+static float distance_of(const pass *p, const float place[3]) {
+    return glm_vec3_distance2((float *)(uintptr_t)place, (float *)(uintptr_t)p->host->frame->eye.v);
+}
+
+// Numbers of the shells, the farthest first.
+static void sort(pass *p, uint32_t out[PASS_SHELL_MOST]) {
+    const shell_state *s = shell_state_of(p);
+    for (uint32_t i = 0; i < s->count; i++) {
+        uint32_t at = i;
+        float distance = distance_of(p, s->places[i]);
+        for (; at > 0 && distance_of(p, s->places[out[at - 1]]) < distance; at--)
+            out[at] = out[at - 1];
+        out[at] = i;
+    }
+}
+
+static bool draw_side(pass *p, kernel *k, gpu_draw_desc *target, uint32_t shell, int32_t far_side) {
+    gpu_binding kept[GPU_MAX_SLOTS];
+    kernel_set_int(k, N_shell_at, (int32_t)shell);
+    kernel_set_int(k, N_far_side, far_side);
+    gpu_draw draw = kernel_draw(k, kept);
+    draw.vertices = drawn_count(shell_state_of(p));
+    target->draws = &draw;
+    target->draw_count = 1;
+    return gpu_draw_all(p->host->device, target);
+}
+
+static bool draw_shells(pass *p, gpu_draw_desc *target) {
+    const shell_state *s = shell_state_of(p);
+    uint32_t order[PASS_SHELL_MOST];
+    const int32_t first = s->both_sides ? 1 : 0;
+    kernel *k = shell_use(p, SHELL_DRAW);
+    if (!k) return false;
+    sort(p, order);
+    for (uint32_t i = 0; i < s->count; i++)
+        for (int32_t side = first; side >= 0; side--)
+            if (!draw_side(p, k, target, order[i], side)) return false;
+    return true;
+}
+
+static bool shell_record_mesh(pass *p) {
+    const shell_state *s = shell_state_of(p);
+    graph *g = p->host->graph;
+    uint32_t size[3];
+    kernel *k = shell_use(p, SHELL_DRAW);
+    if (!k) return false;
+    gpu_draw_desc target = {
+        .pipeline = k->pipeline,
+        .colors = {pass_get_image(p, N_image), graph_get_image(g, s->drawn_front)},
+        .depth = graph_get_image(g, s->z),
+        .clear = true,
+        .clear_color = {{0}, {1e9f}},
+        .clear_depth = 1,
+    };
+    if (!gpu_draw_all(p->host->device, &target)) return false;
+    target.clear = false;
+    if (s->count > 0 &&
+        !(shell_run(p, SHELL_VERTICES, vertex_count(s), s->count) && draw_shells(p, &target)))
+        return false;
+    graph_get_size(g, *pass_image(p, N_image), size);
+    return !pass_get_image(p, N_front) || shell_run(p, SHELL_FRONT, size[0], size[1]);
 }
 
 static bool shell_record(pass *p) {
