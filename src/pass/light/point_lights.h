@@ -9,7 +9,7 @@
 // by pass_point_lights_provider.
 //
 // An option `point_lights_by` of the reader says how: auto, all (every point light for every
-// pixel), tiles, and volumes where the reader draws them itself (point_lights_volumes.c).
+// pixel), tiles, and volumes where the reader draws them itself (point_lights_lists.c).
 #pragma once
 #include "pass/pass.h"
 

@@ -2,9 +2,15 @@
 // dispatches before its own. Of "all" the first alone, which copies the point lights into a buffer:
 // there a value that threads side by side read at once costs one access, in an image one for each
 // of them.
+//
+// Or light volumes: a sphere around each point light, as far as it reaches, drawn over the picture;
+// its fragments add the point_light's light to what is seen there (Hargreaves and Harris, "Deferred
+// shading", 2004). The far side is drawn, without a test of depth, so that a sphere that the eye is
+// in counts, too. One draw for all.
 #include "base/error.h"
 #include "base/memory.h"
-#include "pass/light/point_lights_parts.h"
+#include "pass/light/point_lights.h"
+#include "pass/pass_impl.h"
 
 enum {
     TILE = 16,   // pixels, as in lib/point_lights.glsl
@@ -12,7 +18,34 @@ enum {
     RECORD = 32, // bytes
     HEAD = 16,
     WORD_BITS = 32,
-    FEW = 4, // point lights, up to which every pixel may as well look at all
+    FEW = 4,               // point lights, up to which every pixel may as well look at all
+    SPHERE_VERTICES = 240, // as in point_lights_volume.vert
+};
+
+typedef enum point_lights_kernel {
+    POINT_LIGHTS_RECORDS,
+    POINT_LIGHTS_MASKS,
+    POINT_LIGHTS_DRAW,
+    POINT_LIGHTS_KERNELS
+} point_lights_kernel;
+typedef enum lists_buffer {
+    POINT_LIGHT_RECORDS,
+    POINT_LIGHT_MASKS,
+    POINT_LIGHT_BOUNDS,
+    POINT_LIGHT_BUFFERS
+} lists_buffer;
+
+#define POINT_LIGHTS_NAMES(NAME)                                                                   \
+    NAME(width), NAME(height), NAME(point_light_count), NAME(point_light_words),                   \
+        NAME(point_light_tiles_across), NAME(point_light_picture)
+enum { POINT_LIGHTS_NAMES(KERNEL_NAME_ID) };
+
+struct pass_point_lights {
+    uint32_t count;
+    point_lights_way way;
+    gpu_buffer *buffers[POINT_LIGHT_BUFFERS];
+    gpu_image *light; // what spheres around the point lights have added up, where the way is
+                      // POINT_LIGHTS_VOLUMES
 };
 
 static const pass_kernel kernels[POINT_LIGHTS_KERNELS] = {
@@ -80,6 +113,12 @@ static bool wants_kernel(const pass *p, size_t index) {
            (index == POINT_LIGHTS_MASKS ? POINT_LIGHTS_TILES : POINT_LIGHTS_VOLUMES);
 }
 
+static void point_lights_target(const pass *p, size_t index, gpu_graphics_desc *out) {
+    (void)p;
+    (void)index; // the only one that draws
+    *out = (gpu_graphics_desc){.colors = {GPU_RGBA32F}, .cull = GPU_CULL_BACK, .blend = true};
+}
+
 static void point_lights_destroy(pass *p) {
     for (int i = 0; p->point_lights && i < POINT_LIGHT_BUFFERS; i++)
         gpu_buffer_destroy(p->host->device, p->point_lights->buffers[i]);
@@ -110,6 +149,34 @@ static uint64_t bytes_of(const pass *p, const tiling *t, lists_buffer which) { /
     if (p->point_lights->way != POINT_LIGHTS_TILES) return 0;
     return which == POINT_LIGHT_MASKS ? 4ull * t->across * t->down * t->words
                                       : 8ull * t->across * t->height;
+}
+
+static gpu_image_desc describe_light(uint32_t width, uint32_t height) {
+    return (gpu_image_desc){.label = "light of point lights",
+                            .format = GPU_RGBA32F,
+                            .width = width,
+                            .height = height,
+                            .use = GPU_USE_TARGET | GPU_USE_SAMPLED};
+}
+
+static bool has_light(const pass *p, uint32_t width, uint32_t height) {
+    const gpu_image *light = p->point_lights->light;
+    const gpu_image_desc *now = light ? gpu_image_get_desc(light) : NULL;
+    return now && now->width == width && now->height == height;
+}
+
+static void point_lights_list_light(const pass *p, uint32_t width, uint32_t height,
+                                    budget_list *out) {
+    const gpu_image_desc desc = describe_light(width, height);
+    if (!has_light(p, width, height)) budget_list_add(out, desc.label, gpu_image_bytes(&desc));
+}
+
+static bool make_light(pass *p, uint32_t width, uint32_t height) {
+    const gpu_image_desc desc = describe_light(width, height);
+    if (has_light(p, width, height)) return true;
+    gpu_image_destroy(p->host->device, p->point_lights->light);
+    p->point_lights->light = gpu_image_create(p->host->device, &desc);
+    return p->point_lights->light != NULL;
 }
 
 static void point_lights_list_memory(const pass *p, budget_list *out) {
@@ -155,6 +222,23 @@ static bool run_lists(pass *p, point_lights_kernel index, const tiling *t, uint3
     kernel_set_int(k, N_point_light_words, (int32_t)t->words);
     kernel_set_int(k, N_point_light_tiles_across, (int32_t)t->across);
     return kernel_run(k, p->host->device, x, y, 1);
+}
+
+static bool point_lights_draw_volumes(pass *p, uint32_t width, uint32_t height) {
+    const float picture[2] = {(float)width, (float)height};
+    gpu_binding kept[GPU_MAX_SLOTS];
+    kernel *k = pass_use_provided(p, &pass_point_lights_provider, POINT_LIGHTS_DRAW);
+    if (!k || !make_light(p, width, height)) return false;
+    kernel_set(k, N_point_light_picture, picture, sizeof picture);
+    gpu_draw draw = kernel_draw(k, kept);
+    draw.vertices = SPHERE_VERTICES;
+    draw.instances = p->point_lights->count;
+    return kernel_is_bound(k) &&
+           gpu_draw_all(p->host->device, &(gpu_draw_desc){.pipeline = k->pipeline,
+                                                          .colors = {p->point_lights->light},
+                                                          .clear = true,
+                                                          .draws = &draw,
+                                                          .draw_count = 1});
 }
 
 static bool point_lights_prepare(pass *p) {
