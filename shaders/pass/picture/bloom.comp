@@ -14,9 +14,9 @@ uniform image2D color;         //= output rgba16f : the bloom
 
 // One shader for all steps (pass/picture/bloom.c): STAGE_FIRST halves the source, STAGE_DOWN a level,
 // STAGE_TAIL goes down and up again through all small levels, STAGE_UP adds a wider level to one, and
-// STAGE_LAST the first level to the source. Mode gaussian has STAGE_BLUR_FIRST and STAGE_BLUR instead
-// (pass/picture/bloom_gaussian.c). Where the source is what a pass `bright` keeps of a picture and nobody else
-// wants to see that, FROM_BRIGHT is 1 and the picture is read instead.
+// STAGE_LAST the first level to the source. Mode gaussian has STAGE_BLUR_FIRST and STAGE_BLUR instead. Where
+// the source is what a pass `bright` keeps of a picture and nobody else wants to see that, FROM_BRIGHT is 1
+// and the picture is read instead.
 #if FROM_BRIGHT
 uniform float threshold, knee, limit, intensity; // of that pass
 #include "bright/keep.glsl"

@@ -3,9 +3,37 @@
 //
 // Level 0 is not written on the way down: the first step halves the picture, the last one adds to
 // it. Where the picture comes from a pass `bright`, both do its work as well, and that pass is left
-// out unless something else reads it. Mode gaussian stays in one size (bloom_gaussian.c).
+// out unless something else reads it. Mode gaussian stays in one size: a separable
+// blur of nine taps, across and down, as often as `passes` says, to and fro between two images. The
+// width of the light grows with the square root of that.
 #include "base/memory.h"
-#include "pass/picture/bloom_parts.h"
+#include "pass/pass_impl.h"
+
+typedef enum bloom_stage {
+    BLOOM_FIRST,
+    BLOOM_DOWN,
+    BLOOM_TAIL,
+    BLOOM_UP,
+    BLOOM_LAST,
+    BLOOM_BLUR_FIRST, // from here on: of mode gaussian
+    BLOOM_BLUR,
+    BLOOM_STAGES,
+} bloom_stage;
+
+#define BLOOM_NAMES(NAME)                                                                          \
+    NAME(mode), NAME(source), NAME(picture), NAME(color), NAME(levels), NAME(passes), NAME(width), \
+        NAME(height), NAME(tail_levels), NAME(radius), NAME(alpha), NAME(down), NAME(threshold),   \
+        NAME(knee), NAME(limit), NAME(intensity)
+enum { BLOOM_NAMES(KERNEL_NAME_ID), BLOOM_NAME_COUNT, BLOOM_TAKEN = 4 };
+
+typedef struct bloom_state {
+    pass *bright; // whose work is done here; NULL: none
+    size_t bright_uniforms[BLOOM_TAKEN];
+    graph_image picture; // that is read
+    bool same_size;      // as the bloom
+    bool gaussian;       // the mode
+    graph_image across;  // of mode gaussian: blurred across, not yet down
+} bloom_state;
 
 enum { TAIL_ROOM = 4096, TAIL_BYTES = 8 }; // texels in shared memory, of one (bloom/tail.glsl)
 
@@ -141,6 +169,31 @@ static levels find_levels(pass *p) {
     while (l.tail < l.last && mip_size(l.size[0], l.tail) * mip_size(l.size[1], l.tail) > most)
         l.tail++;
     return l;
+}
+
+static bool blur(pass *p, bloom_stage stage, gpu_image *from, gpu_image *to, bool down) {
+    const gpu_image_desc *size = gpu_image_get_desc(to);
+    kernel *k = pass_use(p, stage);
+    if (!k) return false;
+    kernel_bind(k, N_source, (gpu_binding){.image = from, .one_mip = true});
+    kernel_bind(k, N_picture, (gpu_binding){.image = from, .one_mip = true});
+    kernel_bind_image(k, N_color, to);
+    kernel_set_int(k, N_down, down);
+    return kernel_run(k, p->host->device, size->width, size->height, 1);
+}
+
+static bool bloom_record_gaussian(pass *p) {
+    const bloom_state *s = p->state;
+    gpu_image *across = graph_get_image(p->host->graph, s->across);
+    gpu_image *color = pass_get_image(p, N_color);
+    int passes = (int)pass_value(p, N_passes);
+    for (int i = 0; i < passes; i++) {
+        gpu_image *from = i == 0 ? graph_get_image(p->host->graph, s->picture) : color;
+        if (!blur(p, i == 0 ? BLOOM_BLUR_FIRST : BLOOM_BLUR, from, across, false) ||
+            !blur(p, BLOOM_BLUR, across, color, true))
+            return false;
+    }
+    return true;
 }
 
 static bool bloom_record(pass *p) {
