@@ -4,12 +4,75 @@
 // drawn (draw). Nothing is read back: how many there are only the device knows, so that lists have
 // a fixed size, and what does not fit is drawn by itself.
 //
-// Where the order counts, all are kept and listed, and the lists are sorted (splats_sort.c).
+// Where the order counts, all are kept and listed. Entries of the lists are then pairs of a key and
+// a splat, which the device sorts by as many digits as tiles and depth need.
 #include "base/error.h"
 #include "base/memory.h"
+#include "base/swap.h"
 #include "pass/particles/particles.h"
-#include "pass/particles/splats_parts.h"
+#include "pass/pass_impl.h"
 #include <string.h>
+
+enum {
+    SPLATS_TILE = 16,              // pixels along a tile
+    SPLATS_GROUP = 256,            // threads of a group that has one for each particle
+    SPLATS_RECORD = 48,            // bytes of a splat that is kept
+    SPLATS_MOST_RECORDS = 1 << 20, // kept, where others are drawn by themselves,
+    SPLATS_MOST_SORTED = 2097152,  // and where none is
+
+    DIGIT_BITS = 4, // of a key, that are sorted at once
+    ITEMS = 16,     // of a thread, as in splats/sort.comp
+    KEY_BITS = 32,
+    DEPTH_BITS = 16, // unless tiles need more of the key
+};
+
+typedef enum splats_stage {
+    SPLATS_PROJECT,
+    SPLATS_SCAN,
+    SPLATS_LIST,
+    SPLATS_BOUNDS, // of what is sorted, as the last three
+    SPLATS_DRAW,
+    SPLATS_SORT_COUNT,
+    SPLATS_SORT_SCAN,
+    SPLATS_SORT_MOVE,
+    SPLATS_STAGES
+} splats_stage;
+
+// Buffers first: splats_buffer counts as they do.
+#define SPLATS_NAMES(NAME)                                                                         \
+    NAME(SplatRecords), NAME(SplatSums), NAME(SplatHead), NAME(SplatTiles), NAME(SplatEntries),    \
+        NAME(SplatCounts), NAME(SplatGroups), NAME(SplatPairs), NAME(SortTo), NAME(SortCounts),    \
+        NAME(SortFrom), NAME(blend), NAME(lit), NAME(entries), NAME(lights), NAME(shadow),         \
+        NAME(glow), NAME(image), NAME(picture), NAME(tiles_across), NAME(tiles_down),              \
+        NAME(records_most), NAME(entries_most), NAME(group_count), NAME(depth_bits), NAME(shift)
+enum { SPLATS_NAMES(KERNEL_NAME_ID) };
+
+typedef enum splats_buffer {
+    SPLATS_RECORDS,
+    SPLATS_SUMS,
+    SPLATS_HEAD,
+    SPLATS_TILES,
+    SPLATS_ENTRIES,
+    SPLATS_COUNTS, // from here on: of what is sorted
+    SPLATS_GROUPS,
+    SPLATS_PAIRS,
+    SPLATS_SORTED, // the other of two between which pairs go to and fro
+    SPLATS_SORT_COUNTS,
+    SPLATS_BUFFERS
+} splats_buffer;
+
+typedef enum splats_blend { SPLATS_ADDITIVE, SPLATS_WEIGHTED, SPLATS_SORTED_BLEND } splats_blend;
+
+typedef struct splats_state {
+    splats_blend blend;
+    uint32_t places; // in the lists, for each particle
+    gpu_buffer *buffers[SPLATS_BUFFERS];
+    bool empty; // the sums are
+} splats_state;
+
+static inline splats_state *splats_of(const pass *p) {
+    return p->state;
+}
 
 static const char *const names[] = {SPLATS_NAMES(KERNEL_NAME_TEXT)};
 static const char sort_shader[] = "pass/particles/splats/sort.comp";
@@ -49,10 +112,14 @@ static bool splats_declare(pass *p) {
 
 // ---- building ---------------------------------------------------------------------------------
 
+static uint32_t group_threads(const pass *p) {
+    return gpu_get_profile(p->host->device)->sort_threads;
+}
+
 static bool splats_defines(pass *p, size_t index, pass_defines *out) {
     if ((index == SPLATS_BOUNDS || index > SPLATS_DRAW) && !is_sorted(p)) return false;
     if (index > SPLATS_DRAW) {
-        splats_define_sort(p, out);
+        pass_define(out, "SORT_THREADS", arena_format(p->host->memory, "%uu", group_threads(p)));
         return true;
     }
     const gpu_profile *device = gpu_get_profile(p->host->device);
@@ -75,7 +142,7 @@ static uint32_t record_count(const pass *p) {
     return is_sorted(p) || count < most ? count : most;
 }
 
-uint32_t splats_entries(const pass *p) {
+static uint32_t splats_entries(const pass *p) {
     return record_count(p) * splats_of(p)->places;
 }
 
@@ -87,7 +154,7 @@ static uint32_t tiles_along(uint32_t pixels) {
     return (pixels + SPLATS_TILE - 1) / SPLATS_TILE;
 }
 
-uint32_t splats_tile_count(const pass *p) {
+static uint32_t splats_tile_count(const pass *p) {
     uint32_t size[3];
     picture_size(p, size);
     return tiles_along(size[0]) * tiles_along(size[1]);
@@ -95,6 +162,11 @@ uint32_t splats_tile_count(const pass *p) {
 
 static uint32_t group_count(uint32_t particles) {
     return (particles + SPLATS_GROUP - 1) / SPLATS_GROUP;
+}
+
+static uint32_t block_count(const pass *p) {
+    uint32_t each = ITEMS * group_threads(p);
+    return (splats_entries(p) + each - 1) / each;
 }
 
 static bool make_buffer(pass *p, splats_buffer which, uint64_t size) {
@@ -130,7 +202,8 @@ static void find_sizes(const pass *p, uint64_t out[SPLATS_BUFFERS]) {
     }
     out[SPLATS_COUNTS] = 4 * records;
     out[SPLATS_GROUPS] = 4ull * group_count((uint32_t)records);
-    splats_find_sort_sizes(p, out);
+    out[SPLATS_PAIRS] = out[SPLATS_SORTED] = 8ull * splats_entries(p);
+    out[SPLATS_SORT_COUNTS] = (4ull << DIGIT_BITS) * block_count(p);
 }
 
 static bool make_buffers(pass *p) {
@@ -151,6 +224,17 @@ static void splats_list_memory(const pass *p, budget_list *out) {
 }
 
 // ---- in a frame -------------------------------------------------------------------------------
+
+static uint32_t tile_bits(const pass *p) {
+    uint32_t bits = 1;
+    while (bits < KEY_BITS - 1 && (splats_tile_count(p) - 1) >> bits) bits++;
+    return bits;
+}
+
+static uint32_t splats_depth_bits(const pass *p) {
+    uint32_t left = KEY_BITS - tile_bits(p);
+    return left < DEPTH_BITS ? left : DEPTH_BITS;
+}
 
 static bool splats_update(pass *p) {
     box3 smoke = box3_empty(); // that dims
@@ -184,6 +268,31 @@ static bool dispatch(pass *p, splats_stage stage, uint32_t x, uint32_t y) {
 static bool dispatch_each(pass *p, splats_stage stage, uint32_t count) {
     kernel *k = use(p, stage);
     return k && kernel_run_each(k, p->host->device, count);
+}
+
+static bool sort_run(pass *p, splats_stage stage, uint32_t threads) {
+    splats_state *s = splats_of(p);
+    kernel *k = pass_use(p, stage);
+    if (!k) return false;
+    kernel_bind_buffer(k, N_SortFrom, s->buffers[SPLATS_PAIRS]);
+    kernel_bind_buffer(k, N_SortTo, s->buffers[SPLATS_SORTED]);
+    kernel_bind_buffer(k, N_SortCounts, s->buffers[SPLATS_SORT_COUNTS]);
+    kernel_bind_buffer(k, N_SplatHead, s->buffers[SPLATS_HEAD]);
+    return kernel_run(k, p->host->device, threads, 1, 1);
+}
+
+static bool splats_sort(pass *p) {
+    splats_state *s = splats_of(p);
+    uint32_t threads = group_threads(p), bits = splats_depth_bits(p) + tile_bits(p);
+    for (uint32_t shift = 0; shift < bits; shift += DIGIT_BITS) {
+        pass_set_int(p, N_shift, (int32_t)shift);
+        if (!sort_run(p, SPLATS_SORT_COUNT, threads * block_count(p)) ||
+            !sort_run(p, SPLATS_SORT_SCAN, threads) ||
+            !sort_run(p, SPLATS_SORT_MOVE, threads * block_count(p)))
+            return false;
+        SWAP(s->buffers[SPLATS_SORTED], s->buffers[SPLATS_PAIRS]);
+    }
+    return true;
 }
 
 static bool draw_sorted(pass *p, uint32_t used) {
