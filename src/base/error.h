@@ -12,6 +12,9 @@
 // Sets the thread's message. Always returns false, so that `return err_set(...)` is one line.
 bool err_set(const char *format, ...) PRINTF_LIKE(1, 2);
 
+// The same of a function that returns a pointer.
+#define ERR_NULL(...) (err_set(__VA_ARGS__), NULL)
+
 // Puts text before the current message ("while loading x: " + message). Always returns false.
 bool err_prefix(const char *format, ...) PRINTF_LIKE(1, 2);
 

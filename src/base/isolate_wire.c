@@ -128,6 +128,5 @@ void *isolate_map(const isolate_call *call, size_t at, size_t size) {
     if (!isolate_cut(call, at + size)) return NULL;
     void *data = mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_SHARED, call->out, (off_t)at);
     if (data != MAP_FAILED) return data;
-    err_set("the result cannot be written: %s", strerror(errno));
-    return NULL;
+    return ERR_NULL("the result cannot be written: %s", strerror(errno));
 }

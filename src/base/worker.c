@@ -48,8 +48,7 @@ worker *worker_create(size_t threads) {
         if (failed && i > 0) break;
         if (failed) {
             worker_destroy(w);
-            err_set("no thread can be made: %s", strerror(failed));
-            return NULL;
+            return ERR_NULL("no thread can be made: %s", strerror(failed));
         }
         w->thread_count++;
     }

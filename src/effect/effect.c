@@ -205,10 +205,10 @@ const char *effect_find_file(effect *e, const char *name, char path[PATH_CAP]) {
     }
     char why[512];
     str_copy(why, sizeof why, err_get());
-    err_set("%s. Put a copy there, or give its folder as --assets DIR and here its name in that "
-            "folder",
-            why);
-    return NULL;
+    return ERR_NULL(
+        "%s. Put a copy there, or give its folder as --assets DIR and here its name in that "
+        "folder",
+        why);
 }
 
 size_t effect_files(const effect *e, const char *const **out) {
@@ -247,11 +247,10 @@ pass *effect_add_pass(effect *e, const char *type, const char *shader, const cha
     bool traced = e->reference && type && strcmp(type, "march") == 0;
     const pass_type *known = type ? pass_type_find(type) : NULL;
     if (type && !known) return NULL;
-    if (label && (!str_is_identifier(label) || label_taken(e, label))) {
-        err_set("pass name '%s' %s", label,
-                label_taken(e, label) ? "is taken" : "is not a name (letters, digits and _)");
-        return NULL;
-    }
+    if (label && (!str_is_identifier(label) || label_taken(e, label)))
+        return ERR_NULL("pass name '%s' %s", label,
+                        label_taken(e, label) ? "is taken"
+                                              : "is not a name (letters, digits and _)");
     if (!label) label = make_label(e, type ? type : path_name(shader));
     pass *p =
         traced ? make_reference(e, known, label) : pass_create(&e->host, known, shader, label);

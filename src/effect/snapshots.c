@@ -154,10 +154,8 @@ static checkpoint *keep_root(effect *e) {
 }
 
 effect_branch *effect_branch_begin(effect *e) {
-    if (!e->compiled || !graph_simulates(e->graph) || !effect_can_save(e) || e->behind) {
-        err_set("%s: nothing in it has a state to branch off from", e->facts.file);
-        return NULL;
-    }
+    if (!e->compiled || !graph_simulates(e->graph) || !effect_can_save(e) || e->behind)
+        return ERR_NULL("%s: nothing in it has a state to branch off from", e->facts.file);
     checkpoint *state = keep_root(e);
     if (!state) return NULL;
     effect_branch *b = mem_alloc(sizeof *b);

@@ -79,10 +79,7 @@ static const field *medium_field(effect *e, const pass *p, const char *name) {
     size_t index;
     const field *node =
         pass_find_key(p, name, &index) == PASS_FIELD ? pass_get_field(p, index) : NULL;
-    if (!node) {
-        err_set("%s: field '%s' is not given there", pass_label(p), name);
-        return NULL;
-    }
+    if (!node) return ERR_NULL("%s: field '%s' is not given there", pass_label(p), name);
     return node->components == 4 ? field_swizzle(&e->memory, node, "rgb") : node;
 }
 

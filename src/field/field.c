@@ -39,10 +39,9 @@ static field *finish(field *node) {
         size += arg->size;
         if (!moves && !arg->uniform) node->uniform = false;
     }
-    if (deepest >= FIELD_MAX_DEPTH) {
-        err_set("%s: the expression is nested deeper than %d", node->kind->name, FIELD_MAX_DEPTH);
-        return NULL;
-    }
+    if (deepest >= FIELD_MAX_DEPTH)
+        return ERR_NULL("%s: the expression is nested deeper than %d", node->kind->name,
+                        FIELD_MAX_DEPTH);
     node->depth = (uint16_t)(deepest + 1);
     node->size = size < UINT32_MAX ? (uint32_t)size : UINT32_MAX;
     return node;
@@ -129,11 +128,10 @@ field *field_user(arena *memory, const field_glsl *glsl, const field *const *arg
         return NULL;
     }
     for (const char *c = glsl->file; *c; c++)
-        if ((unsigned char)*c < ' ' || *c == '"' || *c == '\\') {
-            err_set("glsl: the file name '%.64s' holds a character that #include cannot take",
-                    glsl->file);
-            return NULL;
-        }
+        if ((unsigned char)*c < ' ' || *c == '"' || *c == '\\')
+            return ERR_NULL(
+                "glsl: the file name '%.64s' holds a character that #include cannot take",
+                glsl->file);
     field_glsl *copy = arena_copy(memory, glsl, sizeof *glsl);
     copy->file = arena_string(memory, glsl->file);
     copy->function = arena_string(memory, glsl->function);
@@ -221,10 +219,8 @@ field *field_make(arena *memory, const char *kind, const field *const *args,
     if (!row) return NULL;
     int index = (int)(row - field_kinds);
     if (index == KIND_TIME) return field_time(memory);
-    if (index <= KIND_SWIZZLE) {
-        err_set("a field of kind '%s' cannot be made by its name alone", kind);
-        return NULL;
-    }
+    if (index <= KIND_SWIZZLE)
+        return ERR_NULL("a field of kind '%s' cannot be made by its name alone", kind);
     field *node = new_node(memory, index, row->components);
     for (size_t i = 0; i < FIELD_MAX_ARGS && row->args[i].desc.name; i++)
         if (!make_arg(memory, node, i, args ? args[i] : NULL)) return NULL;

@@ -129,10 +129,8 @@ static const field *close(tiling *t, const field *node) {
     } else {
         made = close_operator(t, node);
     }
-    if (made && t->count == MOST_NODES) {
-        err_set("tile: more than %d operations", MOST_NODES);
-        return NULL;
-    }
+    if (made && t->count == MOST_NODES)
+        return ERR_NULL("tile: more than %d operations", MOST_NODES);
     if (!made) return NULL;
     map_set(&t->places, node, 0, t->count);
     return t->made[t->count++] = made;

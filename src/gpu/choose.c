@@ -230,8 +230,8 @@ static bool is_index(const char *text, int count, int *out) {
 
 static const vk_choice *usable(const vk_choice *choice) {
     if (choice->info.usable) return choice;
-    err_set("device '%s' cannot run roil: it lacks %s", choice->info.name, choice->info.missing);
-    return NULL;
+    return ERR_NULL("device '%s' cannot run roil: it lacks %s", choice->info.name,
+                    choice->info.missing);
 }
 
 const vk_choice *vk_choice_pick(const vk_choice *choices, int count, const char *device) {

@@ -211,15 +211,11 @@ static bool create_view(gpu *g, gpu_image *image, int format) {
 }
 
 gpu_image *gpu_image_borrow(gpu *g, const gpu_host_image *from) {
-    if (!(aspect_of(from) & VK_IMAGE_ASPECT_DEPTH_BIT)) {
-        err_set("the host's %s: Vulkan format %d is no format of depths", from->label,
-                from->format);
-        return NULL;
-    }
-    if (from->before == VK_IMAGE_LAYOUT_UNDEFINED) {
-        err_set("the host's %s: in layout UNDEFINED it has no content", from->label);
-        return NULL;
-    }
+    if (!(aspect_of(from) & VK_IMAGE_ASPECT_DEPTH_BIT))
+        return ERR_NULL("the host's %s: Vulkan format %d is no format of depths", from->label,
+                        from->format);
+    if (from->before == VK_IMAGE_LAYOUT_UNDEFINED)
+        return ERR_NULL("the host's %s: in layout UNDEFINED it has no content", from->label);
     gpu_image *image = mem_alloc(sizeof *image);
     image->desc = (gpu_image_desc){.label = mem_copy(from->label, strlen(from->label) + 1),
                                    .format = GPU_D32F,

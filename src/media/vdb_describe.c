@@ -157,9 +157,9 @@ const vdb_layout_grid *vdb_tree_owner(const vdb_layout *l, const vdb_layout_grid
         if (strcmp(l->grids[i].unique, g->parent) == 0 && l->grids[i].parent[0] == '\0' &&
             l->grids[i].value == g->value && l->grids[i].linear)
             return &l->grids[i];
-    err_set("%s: damaged VDB file: grid '%s' shares the voxels of a grid '%s' that is not there",
-            l->path, g->name, g->parent);
-    return NULL;
+    return ERR_NULL(
+        "%s: damaged VDB file: grid '%s' shares the voxels of a grid '%s' that is not there",
+        l->path, g->name, g->parent);
 }
 
 // The background stands at the front of the tree, after a 32-bit count.

@@ -159,8 +159,7 @@ char *roil_control_text(roil_effect *e, const char *name) {
 static const effect_control *find_kind(roil_effect *e, const char *name, effect_control_kind kind) {
     const effect_control *c = effect_find_control(e->effect, name);
     if (!c || c->kind == kind) return c;
-    err_set("'%s' is no %s", name, kind == EFFECT_CONTROL_PALETTE ? "palette" : "curve");
-    return NULL;
+    return ERR_NULL("'%s' is no %s", name, kind == EFFECT_CONTROL_PALETTE ? "palette" : "curve");
 }
 
 bool roil_get_palette(roil_effect *e, const char *name, roil_palette *out) {

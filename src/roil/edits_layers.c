@@ -44,8 +44,7 @@ static const effect_layers *find_layers(const roil_effect *e, const char *name) 
         const effect_layers *l = effect_get_layers(e->effect, i);
         if (strcmp(l->name, name) == 0) return l;
     }
-    err_set("the effect has no layers called '%.64s'", name);
-    return NULL;
+    return ERR_NULL("the effect has no layers called '%.64s'", name);
 }
 
 // ---- in the text --------------------------------------------------------------------------------

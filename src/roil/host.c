@@ -33,9 +33,8 @@ bool roil_make_layer(roil_effect *e, const roil_layer_desc *desc) {
 const char *roil_get_layer_image(const roil_effect *e, roil_layer_image image) {
     if (e->has_layer && (unsigned)image < ROIL_LAYER_IMAGES)
         return graph_get_desc(effect_graph(e->effect), e->layer.images[image])->name;
-    err_set("%s", e->has_layer ? "there is no such image of a layer"
-                               : "the effect is no layer: roil_make_layer makes it one");
-    return NULL;
+    return ERR_NULL("%s", e->has_layer ? "there is no such image of a layer"
+                                       : "the effect is no layer: roil_make_layer makes it one");
 }
 
 // ---- what the host says -----------------------------------------------------------------------
@@ -113,15 +112,11 @@ static roil_readback *read_begin(roil_effect *e, const char *image) {
     const graph_image which = image_to_read(e, image);
     gpu_image *source = which.id ? graph_get_image(effect_graph(e->effect), which) : NULL;
     if (image && !which.id) return NULL;
-    if (!source || !e->frame) {
-        err_set("there is no such image yet: keep it (roil_keep) and render a frame first");
-        return NULL;
-    }
+    if (!source || !e->frame)
+        return ERR_NULL("there is no such image yet: keep it (roil_keep) and render a frame first");
     const gpu_image_desc *desc = gpu_image_get_desc(source);
-    if (desc->depth > 1 || desc->format == GPU_R32U) {
-        err_set("%s: only two-dimensional pictures can be read", desc->label);
-        return NULL;
-    }
+    if (desc->depth > 1 || desc->format == GPU_R32U)
+        return ERR_NULL("%s: only two-dimensional pictures can be read", desc->label);
     roil_readback *b = mem_alloc(sizeof *b);
     b->device = e->owner->device;
     b->size = *desc;

@@ -62,10 +62,7 @@ static json_t *effects_tree(const roil *r) {
     char pattern[PATH_CAP];
     file_list files = {0};
     if (!path_join(pattern, r->home, "effects/*.lua") || !file_glob(pattern, &files)) return NULL;
-    if (!files.count) {
-        err_set("%s: no effects lie there", pattern);
-        return NULL;
-    }
+    if (!files.count) return ERR_NULL("%s: no effects lie there", pattern);
     char *list = read_text(r->home, "tests/golden/pictures.txt", SOURCE_MAX);
     json_t *all = json_array();
     for (size_t i = 0; i < files.count; i++) {

@@ -148,15 +148,10 @@ static gpu_image *find_image(roil_effect *e, const roil_inspection *how, graph_i
     *found = roil_find_image(e, how->image);
     if (!found->id) return NULL;
     gpu_image *image = graph_get_image(g, *found);
-    if (!image || !graph_is_alone(g, *found)) {
-        err_set("image '%s' %s: it must be kept (roil_keep) to be inspected", how->image,
-                image ? "shares its memory" : "is not drawn");
-        return NULL;
-    }
-    if (!e->frame) {
-        err_set("image '%s' is empty yet: render a frame first", how->image);
-        return NULL;
-    }
+    if (!image || !graph_is_alone(g, *found))
+        return ERR_NULL("image '%s' %s: it must be kept (roil_keep) to be inspected", how->image,
+                        image ? "shares its memory" : "is not drawn");
+    if (!e->frame) return ERR_NULL("image '%s' is empty yet: render a frame first", how->image);
     return image;
 }
 

@@ -269,10 +269,7 @@ static void free_live(roil_live *l) { // its threads have ended
 }
 
 static roil_live *create_live(roil *r, const roil_live_desc *desc) {
-    if (!r->device) {
-        err_set("no device: an effect can only be checked");
-        return NULL;
-    }
+    if (!r->device) return ERR_NULL("no device: an effect can only be checked");
     roil_live *l = mem_alloc(sizeof *l);
     *l = (roil_live){
         .owner = r, .file = copy_text(desc->file), .wake = desc->wake, .user = desc->user};

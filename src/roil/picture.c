@@ -350,10 +350,8 @@ static char *describe_picture(roil_effect *e, const roil_save_options *o) {
 static picture *take_picture(roil_effect *e, const char *file, const roil_save_options *options) {
     static const roil_save_options defaults;
     bool exr = strcmp(path_extension(file), "exr") == 0;
-    if (!exr && strcmp(path_extension(file), "png") != 0) {
-        err_set("%s: pictures are .png or .exr", file);
-        return NULL;
-    }
+    if (!exr && strcmp(path_extension(file), "png") != 0)
+        return ERR_NULL("%s: pictures are .png or .exr", file);
     picture *p = mem_alloc(sizeof *p);
     p->exr = exr;
     p->options = options ? *options : defaults;

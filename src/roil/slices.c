@@ -43,20 +43,17 @@ pass *roil_slices_find(const roil_effect *e, size_t flow, uint32_t slice) {
         pass *p = effect_get_pass(e->effect, i);
         if (!pass_is(p, "slices") || left-- > 0) continue;
         if (slice < pass_slices_get_desc(p)->count) return p;
-        err_set("%s: there is no slice %u", pass_label(p), slice + 1);
-        return NULL;
+        return ERR_NULL("%s: there is no slice %u", pass_label(p), slice + 1);
     }
-    err_set("the effect has no slices number %zu", flow + 1);
-    return NULL;
+    return ERR_NULL("the effect has no slices number %zu", flow + 1);
 }
 
 pass *roil_slices_find_square(const roil_effect *e, const roil_slices_square *where) {
     if (isfinite(where->middle[0]) && isfinite(where->middle[1]) && where->side > 0 &&
         isfinite(where->side))
         return roil_slices_find(e, where->flow, where->slice);
-    err_set("there is no square of side %g at %g, %g", (double)where->side,
-            (double)where->middle[0], (double)where->middle[1]);
-    return NULL;
+    return ERR_NULL("there is no square of side %g at %g, %g", (double)where->side,
+                    (double)where->middle[0], (double)where->middle[1]);
 }
 
 // ---- seeing -----------------------------------------------------------------------------------

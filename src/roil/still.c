@@ -18,10 +18,7 @@ static gpu_image *make_texture(gpu *g, uint32_t width, uint32_t height) {
 }
 
 static roil_texture *create_texture(roil *r, uint32_t width, uint32_t height, const uint8_t *rgba) {
-    if (!r->device) {
-        err_set("no device: there are no textures");
-        return NULL;
-    }
+    if (!r->device) return ERR_NULL("no device: there are no textures");
     gpu_image *image = make_texture(r->shown, width, height);
     if (!image) return NULL;
     size_t size = (size_t)width * height * 4;
@@ -105,10 +102,7 @@ static bool still_fill(roil *r, roil_still *s, gpu_image *picture) {
 static roil_still *create_still(roil_effect *e) {
     roil *r = e->owner;
     gpu_image *picture = view_picture(e);
-    if (!picture) {
-        err_set("there is no picture yet: render a frame first");
-        return NULL;
-    }
+    if (!picture) return ERR_NULL("there is no picture yet: render a frame first");
     const gpu_image_desc *size = gpu_image_get_desc(picture);
     roil_still *s = mem_alloc(sizeof *s);
     s->size = (gpu_image_desc){.label = "pictures kept",

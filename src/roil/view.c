@@ -50,10 +50,7 @@ static bool view_fill(roil *r, view *v) {
 
 view *view_get(roil *r) {
     if (r->view) return r->view;
-    if (!r->device) {
-        err_set("no device: nothing can be shown");
-        return NULL;
-    }
+    if (!r->device) return ERR_NULL("no device: nothing can be shown");
     r->view = mem_alloc(sizeof *r->view);
     if (!view_fill(r, r->view)) roil_free_view(r);
     return r->view;

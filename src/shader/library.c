@@ -25,10 +25,8 @@ shader_library *shader_library_create(const shader_library_desc *desc) {
         [ROOT_EFFECT] = desc->effect_root, [ROOT_PROGRAM] = desc->shader_root};
     for (size_t i = 0; i < desc->asset_count; i++) roots[ROOT_ASSETS + i] = desc->assets[i];
     for (int i = 0; i < ROOT_COUNT; i++) {
-        if (roots[i] && !file_is_folder(roots[i])) {
-            err_set("%s: no such folder of shaders", roots[i]);
-            return NULL;
-        }
+        if (roots[i] && !file_is_folder(roots[i]))
+            return ERR_NULL("%s: no such folder of shaders", roots[i]);
     }
     shader_library *library = mem_alloc(sizeof *library);
     for (int i = 0; i < ROOT_COUNT; i++)

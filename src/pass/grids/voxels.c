@@ -130,10 +130,9 @@ static bool choose_box(const pass *p, const pass_voxels_desc *desc, const field_
 field_grid *pass_voxels_open(pass *p, const pass_voxels_desc *desc, const field_context *context) {
     voxels_pass *s = p->state = arena_alloc(p->host->memory, sizeof *s);
     *s = (voxels_pass){.owner = p, .updated = (double)NAN};
-    if (p->mesh_count == 0) {
-        err_set("%s: a mesh is missing, as in voxels { mesh { \"data/ball.obj\" } }", p->label);
-        return NULL;
-    }
+    if (p->mesh_count == 0)
+        return ERR_NULL("%s: a mesh is missing, as in voxels { mesh { \"data/ball.obj\" } }",
+                        p->label);
     if (!choose_box(p, desc, context, &s->grid)) return NULL;
     s->grid.name = p->label;
     s->grid.channel_count = PASS_VOXELS_CHANNELS;

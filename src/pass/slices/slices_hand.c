@@ -115,10 +115,7 @@ static float sample(const look *l, float x, float y, int channel) { // in cells
 // All slices of the last kept step; free with mem_free. NULL with a message.
 static uint16_t *read_look(const slices_flow *f, flow_look which, int channels) {
     gpu_image *image = flow_image(f->solver, which, 0);
-    if (!image) {
-        err_set("%s: nothing has flowed yet", f->pass->label);
-        return NULL;
-    }
+    if (!image) return ERR_NULL("%s: nothing has flowed yet", f->pass->label);
     size_t size = (size_t)f->desc.size[0] * f->desc.size[1] * f->desc.count * (size_t)channels * 2;
     uint16_t *halves = mem_alloc(size);
     if (gpu_image_read(f->pass->host->device, image, halves, size)) return halves;
