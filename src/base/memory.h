@@ -28,14 +28,15 @@ void *mem_reserve(void *array, size_t element, size_t count, size_t *capacity);
 
 #define COUNT_OF(array) (sizeof(array) / sizeof *(array))
 
-// ---- a call of the library, or a job of one of its threads
-// ---------------------------------------
+// ---- a call of the library, or a job of one of its threads ------------------------------------
 
 void mem_enter(void); // calls may be nested; of them the outermost counts
 // Ends what mem_enter began. Returns `done`, or false with a message when memory was short: on this
 // thread, or on one that works for calls.
 bool mem_leave(bool done);
 bool mem_is_short(void); // within a call: it will fail
+// A call that does no more than `done` says.
+#define MEM_CALL(done) (mem_enter(), mem_leave(done))
 
 // ---- where it comes from ------------------------------------------------------------------------
 

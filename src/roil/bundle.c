@@ -286,10 +286,7 @@ static roil_inputs *collect(roil *r, const char *file) {
 }
 
 roil_inputs *roil_collect(roil *r, const char *file) {
-    mem_enter();
-    roil_inputs *inputs = collect(r, file);
-    LEAVE_WITH(inputs, roil_free_inputs(inputs));
-    return inputs;
+    RETURN_MADE(roil_inputs, collect(r, file), roil_free_inputs(made));
 }
 
 void roil_free_inputs(roil_inputs *inputs) {
@@ -337,6 +334,5 @@ static bool write_whole(roil *r, const roil_inputs *in, const char *file) {
 }
 
 bool roil_bundle(roil *r, const roil_inputs *in, const char *file) {
-    mem_enter();
-    return mem_leave(write_whole(r, in, file));
+    return MEM_CALL(write_whole(r, in, file));
 }

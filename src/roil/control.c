@@ -124,20 +124,17 @@ bool roil_find_control(roil_effect *e, const char *name, size_t *index) {
 }
 
 bool roil_set(roil_effect *e, const char *name, const char *value) {
-    mem_enter();
-    return mem_leave(effect_set(e->effect, name, value));
+    return MEM_CALL(effect_set(e->effect, name, value));
 }
 
 bool roil_set_floats(roil_effect *e, size_t control, const float *values, int count) {
     if (control >= effect_control_count(e->effect))
         return err_set("there is no control %zu", control);
-    mem_enter();
-    return mem_leave(effect_set_numbers(e->effect, control, values, count));
+    return MEM_CALL(effect_set_numbers(e->effect, control, values, count));
 }
 
 bool roil_reset(roil_effect *e, const char *name) {
-    mem_enter();
-    return mem_leave(effect_reset(e->effect, name));
+    return MEM_CALL(effect_reset(e->effect, name));
 }
 
 static char *finish(strbuf *text) {
@@ -269,8 +266,7 @@ static bool get_camera(roil_effect *e, roil_camera *out) {
 }
 
 bool roil_get_camera(roil_effect *e, roil_camera *out) {
-    mem_enter();
-    return mem_leave(get_camera(e, out));
+    return MEM_CALL(get_camera(e, out));
 }
 
 static bool get_bounds(roil_effect *e, float low[3], float high[3]) {
@@ -291,8 +287,7 @@ static bool get_bounds(roil_effect *e, float low[3], float high[3]) {
 }
 
 bool roil_get_bounds(roil_effect *e, float low[3], float high[3]) {
-    mem_enter();
-    return mem_leave(get_bounds(e, low, high));
+    return MEM_CALL(get_bounds(e, low, high));
 }
 
 bool roil_is_under_ground(roil_effect *e, const float at[3], float *height) {

@@ -414,28 +414,29 @@ static roil_edits *create_edits(roil_effect *e, const effect_control *one, bool 
     return x;
 }
 
-roil_edits *roil_edits_create(roil_effect *e, const char *control) {
-    mem_enter();
+static roil_edits *create_chosen(roil_effect *e, const char *control) {
     const effect_control *one = control ? effect_find_control(e->effect, control) : NULL;
-    roil_edits *made = control && !one ? NULL : create_edits(e, one, false);
-    LEAVE_WITH(made, roil_edits_free(made));
-    return made;
+    return control && !one ? NULL : create_edits(e, one, false);
+}
+
+roil_edits *roil_edits_create(roil_effect *e, const char *control) {
+    RETURN_MADE(roil_edits, create_chosen(e, control), roil_edits_free(made));
+}
+
+static roil_edits *create_parameter(roil_effect *e, const char *control) {
+    const effect_control *c = effect_find_control(e->effect, control);
+    if (!c) return NULL;
+    if (is_param(c) || is_ramp(c) || c->kind == EFFECT_CONTROL_EVENTS ||
+        c->kind == EFFECT_CONTROL_LOADED)
+        return ERR_NULL(
+            "'%s' cannot become a parameter; numbers and words of passes, fields, camera, sun, "
+            "sky, lights, materials, meshes and nodes can",
+            control);
+    return create_edits(e, c, true);
 }
 
 roil_edits *roil_edits_create_parameter(roil_effect *e, const char *control) {
-    mem_enter();
-    const effect_control *c = effect_find_control(e->effect, control);
-    roil_edits *made = NULL;
-    if (c && (is_param(c) || is_ramp(c) || c->kind == EFFECT_CONTROL_EVENTS ||
-              c->kind == EFFECT_CONTROL_LOADED)) {
-        err_set("'%s' cannot become a parameter; numbers and words of passes, fields, camera, sun, "
-                "sky, lights, materials, meshes and nodes can",
-                control);
-    } else if (c) {
-        made = create_edits(e, c, true);
-    }
-    LEAVE_WITH(made, roil_edits_free(made));
-    return made;
+    RETURN_MADE(roil_edits, create_parameter(e, control), roil_edits_free(made));
 }
 
 size_t roil_edits_list(const roil_edits *x, roil_edit *out, size_t capacity) {
@@ -470,13 +471,11 @@ static bool write_files(const roil_edits *x, bool back) {
 }
 
 bool roil_edits_write(const roil_edits *x) {
-    mem_enter();
-    return mem_leave(write_files(x, false));
+    return MEM_CALL(write_files(x, false));
 }
 
 bool roil_edits_undo(const roil_edits *x) {
-    mem_enter();
-    return mem_leave(write_files(x, true));
+    return MEM_CALL(write_files(x, true));
 }
 
 void roil_edits_free(roil_edits *x) {

@@ -231,8 +231,5 @@ static roil_edits *create_layer(roil_effect *e, const char *layers, size_t layer
 
 roil_edits *roil_edits_create_layer(roil_effect *e, const char *layers, size_t layer,
                                     roil_layer_change how) {
-    mem_enter();
-    roil_edits *made = create_layer(e, layers, layer, how);
-    LEAVE_WITH(made, roil_edits_free(made));
-    return made;
+    RETURN_MADE(roil_edits, create_layer(e, layers, layer, how), roil_edits_free(made));
 }

@@ -61,10 +61,7 @@ static roil_effect *load(roil *r, const char *folder, const char *file,
 
 roil_effect *roil_load_inside(roil *r, const char *folder, const char *file,
                               const roil_setting *settings, size_t count) {
-    mem_enter();
-    roil_effect *made = load(r, folder, file, settings, count);
-    LEAVE_WITH(made, roil_unload(made));
-    return made;
+    RETURN_MADE(roil_effect, load(r, folder, file, settings, count), roil_unload(made));
 }
 
 size_t roil_files(const roil_effect *e, const char **out, size_t capacity) {
@@ -144,8 +141,7 @@ static bool set_samples(roil_effect *e, uint32_t samples, double shutter) {
 }
 
 bool roil_set_samples(roil_effect *e, uint32_t samples, double shutter) {
-    mem_enter();
-    return mem_leave(set_samples(e, samples, shutter));
+    return MEM_CALL(set_samples(e, samples, shutter));
 }
 
 bool roil_prepare(roil_effect *e, uint32_t width, uint32_t height) {
@@ -193,8 +189,7 @@ bool roil_get_simulation(const roil_effect *e, roil_simulation *out) {
 }
 
 bool roil_catch_up(roil_effect *e, double frame, bool *more) {
-    mem_enter();
-    return mem_leave(effect_catch_up(e->effect, frame, more));
+    return MEM_CALL(effect_catch_up(e->effect, frame, more));
 }
 
 size_t roil_snapshots(const roil_effect *e, double *frames, size_t capacity) {
@@ -212,26 +207,12 @@ static roil_branch *branch_of(effect_branch *snapshots) {
     return b;
 }
 
-static roil_branch *begin_branch(roil_effect *e) {
-    return branch_of(effect_branch_begin(e->effect));
-}
-
 roil_branch *roil_branch_begin(roil_effect *e) {
-    mem_enter();
-    roil_branch *made = begin_branch(e);
-    LEAVE_WITH(made, roil_branch_destroy(made));
-    return made;
-}
-
-static roil_branch *leave_with_branch(roil_effect *e) {
-    return branch_of(effect_branch_leave(e->effect));
+    RETURN_MADE(roil_branch, branch_of(effect_branch_begin(e->effect)), roil_branch_destroy(made));
 }
 
 roil_branch *roil_branch_leave(roil_effect *e) {
-    mem_enter();
-    roil_branch *made = leave_with_branch(e);
-    LEAVE_WITH(made, roil_branch_destroy(made));
-    return made;
+    RETURN_MADE(roil_branch, branch_of(effect_branch_leave(e->effect)), roil_branch_destroy(made));
 }
 
 void roil_branch_enter(roil_effect *e, roil_branch *b) {
@@ -250,8 +231,7 @@ void roil_restart(roil_effect *e) {
 }
 
 bool roil_checkpoint(roil_effect *e, const char *file) {
-    mem_enter();
-    return mem_leave(effect_save_state(e->effect, file));
+    return MEM_CALL(effect_save_state(e->effect, file));
 }
 
 bool roil_restore(roil_effect *e, const char *file, double *frame) {

@@ -22,10 +22,8 @@ char *roil_event_text(roil_effect *e, const char *key, float x, float y) {
     effect_event event = {.time = isfinite(now) ? now : 0, .numbers = 6};
     size_t count;
     const effect_event *before = effect_events(e->effect, &count);
-    if (!str_copy(event.key, sizeof event.key, key)) {
-        err_set("key '%s' has too long a name", key);
-        return roil_leave_text(NULL);
-    }
+    if (!str_copy(event.key, sizeof event.key, key))
+        return roil_leave_text(ERR_NULL("key '%s' has too long a name", key));
     if (count >= EFFECT_MOST_EVENTS) {
         err_set("there are %zu events; at most %d are possible", count, EFFECT_MOST_EVENTS);
         return roil_leave_text(NULL);

@@ -64,10 +64,7 @@ size_t roil_graph_links(roil_effect *e, roil_graph_link *out, size_t capacity) {
 char *roil_graph_fields(roil_effect *e, const char *name) {
     mem_enter();
     const pass *p = owner_of(e, name);
-    if (!p) {
-        err_set("no pass '%s'", name);
-        return roil_leave_text(NULL);
-    }
+    if (!p) return roil_leave_text(ERR_NULL("no pass '%s'", name));
     const shader_interface *face = pass_interface(p);
     strbuf text = {0};
     for (size_t i = 0; i < face->field_count; i++) {

@@ -26,8 +26,7 @@ static bool make_layer(roil_effect *e, const roil_layer_desc *desc) {
 }
 
 bool roil_make_layer(roil_effect *e, const roil_layer_desc *desc) {
-    mem_enter();
-    return mem_leave(make_layer(e, desc));
+    return MEM_CALL(make_layer(e, desc));
 }
 
 const char *roil_get_layer_image(const roil_effect *e, roil_layer_image image) {
@@ -130,10 +129,7 @@ static roil_readback *read_begin(roil_effect *e, const char *image) {
 }
 
 roil_readback *roil_read_begin(roil_effect *e, const char *image) {
-    mem_enter();
-    roil_readback *b = read_begin(e, image);
-    LEAVE_WITH(b, roil_read_end(b, NULL));
-    return b;
+    RETURN_MADE(roil_readback, read_begin(e, image), roil_read_end(made, NULL));
 }
 
 bool roil_read_ready(roil_readback *b) {
@@ -156,6 +152,5 @@ static bool read_end(roil_readback *b, float *out) {
 }
 
 bool roil_read_end(roil_readback *b, float *out) {
-    mem_enter();
-    return mem_leave(read_end(b, out));
+    return MEM_CALL(read_end(b, out));
 }

@@ -113,8 +113,7 @@ static bool reset(roil_live *l, const char *name) {
 }
 
 bool roil_live_reset(roil_live *l, const char *name) {
-    mem_enter();
-    return mem_leave(reset(l, name));
+    return MEM_CALL(reset(l, name));
 }
 
 char *roil_live_setting(roil_live *l, const char *name) {
@@ -296,10 +295,7 @@ static roil_live *create_live(roil *r, const roil_live_desc *desc) {
 }
 
 roil_live *roil_live_create(roil *r, const roil_live_desc *desc) {
-    mem_enter();
-    roil_live *made = create_live(r, desc);
-    LEAVE_WITH(made, roil_live_destroy(made));
-    return made;
+    RETURN_MADE(roil_live, create_live(r, desc), roil_live_destroy(made));
 }
 
 // Returns whether all builders ended before `until`. Call it with the lock held.

@@ -166,6 +166,5 @@ static bool find_named_place(const roil *r, const char *message, roil_place *out
 }
 
 bool roil_find_place(const roil *r, const char *message, roil_place *out) {
-    mem_enter();
-    return mem_leave(find_named_place(r, message, out));
+    return MEM_CALL(find_named_place(r, message, out));
 }

@@ -266,10 +266,7 @@ static roil_made *read_made(const char *file) {
 }
 
 roil_made *roil_read_made(const char *file) {
-    mem_enter();
-    roil_made *made = read_made(file);
-    LEAVE_WITH(made, roil_free_made(made));
-    return made;
+    RETURN_MADE(roil_made, read_made(file), roil_free_made(made));
 }
 
 void roil_free_made(roil_made *m) {

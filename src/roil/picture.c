@@ -410,10 +410,7 @@ static roil_writer *create_writer(void) {
 }
 
 roil_writer *roil_writer_create(void) {
-    mem_enter();
-    roil_writer *made = create_writer();
-    LEAVE_WITH(made, roil_writer_finish(made));
-    return made;
+    RETURN_MADE(roil_writer, create_writer(), roil_writer_finish(made));
 }
 
 bool roil_writer_save(roil_writer *w, roil_effect *e, const char *file,
@@ -479,10 +476,7 @@ static roil_video *create_video(roil_effect *e, const char *file, double fps, bo
 }
 
 roil_video *roil_video_create(roil_effect *e, const char *file, double fps, bool alpha) {
-    mem_enter();
-    roil_video *made = create_video(e, file, fps, alpha);
-    LEAVE_WITH(made, roil_video_abandon(made));
-    return made;
+    RETURN_MADE(roil_video, create_video(e, file, fps, alpha), roil_video_abandon(made));
 }
 
 static bool encode_frame(void *user) {

@@ -119,10 +119,7 @@ static roil_preset *read_preset(roil *r, const char *effect_file, const char *pr
 }
 
 roil_preset *roil_read_preset(roil *r, const char *effect_file, const char *preset) {
-    mem_enter();
-    roil_preset *made = read_preset(r, effect_file, preset);
-    LEAVE_WITH(made, roil_free_preset(made));
-    return made;
+    RETURN_MADE(roil_preset, read_preset(r, effect_file, preset), roil_free_preset(made));
 }
 
 void roil_free_preset(roil_preset *preset) {

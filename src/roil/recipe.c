@@ -36,10 +36,7 @@ static roil_recipe *recipe_of(const char *png) {
 }
 
 roil_recipe *roil_read_recipe(const char *png) {
-    mem_enter();
-    roil_recipe *made = recipe_of(png);
-    LEAVE_WITH(made, roil_free_recipe(made));
-    return made;
+    RETURN_MADE(roil_recipe, recipe_of(png), roil_free_recipe(made));
 }
 
 void roil_free_recipe(roil_recipe *r) {

@@ -24,8 +24,9 @@ void roil_free(void *text) {
 }
 
 char *roil_leave_text(char *text) {
-    LEAVE_WITH(text, mem_free(text));
-    return text;
+    if (mem_leave(text != NULL)) return text;
+    mem_free(text);
+    return NULL;
 }
 
 size_t roil_leave_count(size_t count) {
@@ -150,10 +151,7 @@ static roil *create(const roil_desc *desc) {
 }
 
 roil *roil_create(const roil_desc *desc) {
-    mem_enter();
-    roil *made = create(desc);
-    LEAVE_WITH(made, roil_destroy(made));
-    return made;
+    RETURN_MADE(roil, create(desc), roil_destroy(made));
 }
 
 void roil_destroy(roil *r) {

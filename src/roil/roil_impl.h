@@ -110,16 +110,20 @@ roil_made *roil_parse_made(const char *line, const char *name); // `name` is for
 // Opens the host's device. NULL with a message. (roil/vulkan.c)
 gpu *roil_open_host(const gpu_desc *how, const roil_vulkan *vulkan);
 
-// Ends a call that makes an object: it is destroyed, and NULL, when memory was short.
-#define LEAVE_WITH(object, destroy)                                                                \
+// The whole of a call that makes an object, which it returns. When memory was short, it is
+// destroyed, as `made`, and NULL.
+#define RETURN_MADE(type, make, destroy)                                                           \
     do {                                                                                           \
-        if ((object) && mem_is_short()) {                                                          \
+        mem_enter();                                                                               \
+        type *made = (make);                                                                       \
+        if (made && mem_is_short()) {                                                              \
             destroy;                                                                               \
-            (object) = NULL;                                                                       \
+            made = NULL;                                                                           \
         }                                                                                          \
-        mem_leave((object) != NULL);                                                               \
+        mem_leave(made != NULL);                                                                   \
+        return made;                                                                               \
     } while (0)
-char *roil_leave_text(char *text);     // the same of a text, which is returned
+char *roil_leave_text(char *text);     // ends a call that makes a text, likewise
 size_t roil_leave_count(size_t count); // and of a call that counts: 0 when memory was short
 
 time_limit roil_time_limit(const roil *r); // a new limit for a load

@@ -254,10 +254,7 @@ static roil_sheet *create_sheet(roil_effect *e, const roil_sheet_desc *desc) {
 }
 
 roil_sheet *roil_sheet_create(roil_effect *e, const roil_sheet_desc *desc) {
-    mem_enter();
-    roil_sheet *made = create_sheet(e, desc);
-    LEAVE_WITH(made, roil_sheet_free(made));
-    return made;
+    RETURN_MADE(roil_sheet, create_sheet(e, desc), roil_sheet_free(made));
 }
 
 static bool repeats(roil_effect *e, const char *source, double seconds, char *why,
@@ -270,8 +267,7 @@ static bool repeats(roil_effect *e, const char *source, double seconds, char *wh
 }
 
 bool roil_repeats(roil_effect *e, const char *source, double seconds, char *why, size_t capacity) {
-    mem_enter();
-    return mem_leave(repeats(e, source, seconds, why, capacity));
+    return MEM_CALL(repeats(e, source, seconds, why, capacity));
 }
 
 static bool add_map(roil_sheet *s, sheet *maps, sheet_map map, uint32_t cell, float weight) {

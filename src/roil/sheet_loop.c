@@ -110,8 +110,7 @@ static bool dissolve(roil_sheet *s, uint32_t cell, double part) {
 }
 
 bool roil_sheet_dissolve(roil_sheet *s, uint32_t cell, double part) {
-    mem_enter();
-    return mem_leave(dissolve(s, cell, part));
+    return MEM_CALL(dissolve(s, cell, part));
 }
 
 bool sheet_blend(roil_sheet *s, double fps) {

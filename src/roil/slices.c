@@ -111,8 +111,7 @@ static bool find_greatest(roil_effect *e, const roil_slices_view *how, float *ou
 }
 
 bool roil_slices_greatest(roil_effect *e, const roil_slices_view *how, float *out) {
-    mem_enter();
-    return mem_leave(find_greatest(e, how, out));
+    return MEM_CALL(find_greatest(e, how, out));
 }
 
 // ---- touching ---------------------------------------------------------------------------------

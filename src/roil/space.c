@@ -386,10 +386,8 @@ char *roil_handle_text(roil_effect *e, size_t handle, bool second, const float a
     size_t index;
     if (!find(e, handle, &p)) return roil_leave_text(NULL);
     const char *name = second ? p.face.second : p.face.control;
-    if (!name) {
-        err_set("%s.%s: no control moves it", p.face.name, p.face.part);
-        return roil_leave_text(NULL);
-    }
+    if (!name)
+        return roil_leave_text(ERR_NULL("%s.%s: no control moves it", p.face.name, p.face.part));
     if (!roil_find_control(e, name, &index)) return roil_leave_text(NULL);
     roil_get_control(e, index, &c);
     float change[3], distance, yaw, pitch;

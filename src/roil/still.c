@@ -36,10 +36,8 @@ static roil_texture *create_texture(roil *r, uint32_t width, uint32_t height, co
 }
 
 roil_texture *roil_texture_create(roil *r, uint32_t width, uint32_t height, const uint8_t *rgba) {
-    mem_enter();
-    roil_texture *made = create_texture(r, width, height, rgba);
-    LEAVE_WITH(made, roil_texture_destroy(r, made));
-    return made;
+    RETURN_MADE(roil_texture, create_texture(r, width, height, rgba),
+                roil_texture_destroy(r, made));
 }
 
 void roil_texture_destroy(roil *r, roil_texture *t) {
@@ -116,10 +114,7 @@ static roil_still *create_still(roil_effect *e) {
 }
 
 roil_still *roil_still_create(roil_effect *e) {
-    mem_enter();
-    roil_still *made = create_still(e);
-    LEAVE_WITH(made, roil_still_destroy(e->owner, made));
-    return made;
+    RETURN_MADE(roil_still, create_still(e), roil_still_destroy(e->owner, made));
 }
 
 // Brings it over once it has been drawn. False also when it has not.
@@ -134,8 +129,7 @@ static bool arrive(roil *r, roil_still *s) {
 }
 
 bool roil_still_ready(roil *r, roil_still *s) {
-    mem_enter();
-    return mem_leave(!s->readback || arrive(r, s));
+    return MEM_CALL(!s->readback || arrive(r, s));
 }
 
 bool view_wait(roil *r, roil_still *s) {

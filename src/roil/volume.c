@@ -88,10 +88,7 @@ static roil_volume *create_volume(roil_effect *e, const roil_volume_desc *desc) 
 }
 
 roil_volume *roil_volume_create(roil_effect *e, const roil_volume_desc *desc) {
-    mem_enter();
-    roil_volume *made = create_volume(e, desc);
-    LEAVE_WITH(made, roil_volume_finish(made));
-    return made;
+    RETURN_MADE(roil_volume, create_volume(e, desc), roil_volume_finish(made));
 }
 
 roil_volume_info roil_volume_get_info(const roil_volume *v) {

@@ -37,8 +37,7 @@ static bool find_needs(PFN_vkGetInstanceProcAddr get, VkInstance instance,
 
 bool roil_vulkan_find_needs(PFN_vkGetInstanceProcAddr get, VkInstance instance,
                             VkPhysicalDevice physical, roil_vulkan_needs *out) {
-    mem_enter();
-    return mem_leave(find_needs(get, instance, physical, out));
+    return MEM_CALL(find_needs(get, instance, physical, out));
 }
 
 gpu *roil_open_host(const gpu_desc *how, const roil_vulkan *vulkan) {
