@@ -44,11 +44,29 @@ int app_print_json(struct json_t *root, int status); // takes the tree; returns 
 
 struct poptOption;
 struct poptContext_s;
-// Prints a message for the error `code` of poptGetNextOpt and returns false. For an unknown option
-// it suggests the nearest of `options`, or lists all of them.
-bool app_refuse_option(struct poptContext_s *context, const struct poptOption *options, int code);
-// Opens the options of a command, `name` as "roil render". `usage` is what else it takes. As popt
-// does for --help, it ends the program where app_describe asks what these options are.
+struct app_settings;
+struct app_frames;
+
+// Numbers of rows whose arguments app_run takes itself; others are a command's own.
+enum { APP_SET = 100, APP_PRESET, APP_EVENT, APP_FRAMES };
+
+typedef struct app_task {
+    void *job;
+    bool (*check)(void *job, struct poptContext_s *arguments); // takes what is no option
+    int (*run)(void *job);                                     // returns the status
+    // These may be NULL.
+    bool (*take)(void *job, int option, char *text); // `text` lives until the program ends
+    struct app_settings *settings;                   // where APP_SET, APP_PRESET and APP_EVENT go
+    struct app_frames *frames;                       // and APP_FRAMES
+} app_task;
+// Does a command, `name` as "roil render", from its options to its status. `usage` is what else it
+// takes. What returns false with a message ends it as bad usage. Settings and frames end with it.
+int app_run(int argc, const char **argv, const char *name, const char *usage,
+            const struct poptOption *options, const app_task *t);
+// Takes the one argument that a command has. `missing` is the message where it is not there.
+bool app_take_effect(struct poptContext_s *arguments, const char **file, const char *missing);
+// Opens the options of a command. As popt does for --help, it ends the program where app_describe
+// asks what these options are.
 struct poptContext_s *app_options(const char *name, int argc, const char **argv,
                                   const struct poptOption *options, const char *usage);
 
@@ -128,9 +146,9 @@ typedef struct app_settings { // --from, then --preset, then --set: later ones w
 void app_add_preset(app_settings *s, const char *preset);
 bool app_add_set(app_settings *s, char *text);         // "NAME=VALUE", cut at its '='
 void app_add_event(app_settings *s, const char *text); // "2.5 click 0.4 0.6"
-#define APP_EVENT_ROW(VALUE)                                                                       \
+#define APP_EVENT_ROW                                                                              \
     {                                                                                              \
-        "event", '\0', POPT_ARG_STRING, NULL, VALUE,                                               \
+        "event", '\0', POPT_ARG_STRING, NULL, APP_EVENT,                                           \
             "an event that replaces the effect's own events: SECONDS click X Y, or SECONDS key "   \
             "NAME [X Y]; may be given several times",                                              \
             "EVENT"                                                                                \

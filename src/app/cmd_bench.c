@@ -16,7 +16,7 @@ enum { OPTION_SIZE = 1, OPTION_ONLY, OPTION_SHARD };
 typedef struct bench_options {
     bench_order order;
     app_frames frames;
-    const char *frames_text, *baseline;
+    const char *baseline;
     const char *report; // folder of results that only get a new report
     roil_setting *only;
     size_t only_count, only_capacity;
@@ -40,9 +40,8 @@ static bool add_only(bench_options *o, char *text) {
     return true;
 }
 
-// popt's texts live until the program ends.
-static bool take_option(bench_options *o, poptContext context, int option) {
-    char *text = poptGetOptArg(context);
+static bool take_option(void *user, int option, char *text) {
+    bench_options *o = user;
     switch (option) {
     case OPTION_SIZE:
         return app_parse_size(text, &o->order.options.width, &o->order.options.height);
@@ -61,8 +60,7 @@ static bool take_numbers(bench_options *o) {
         return err_set("--repeats %d; accepted: 1 to 100000", s->repeats);
     if (!(o->margin >= 0 && o->margin <= 1000))
         return err_set("--margin %g; accepted: 0 to 1000 percent", o->margin);
-    if (!o->frames_text) return true;
-    if (!app_parse_frames(o->frames_text, &o->frames)) return false;
+    if (!o->frames.count) return true;
     if (o->frames.count > SWEEP_MAX_FRAMES)
         return err_set("--frames: %zu frames; at most %d are accepted", o->frames.count,
                        SWEEP_MAX_FRAMES);
@@ -92,53 +90,13 @@ static bool take_inputs(bench_options *o, poptContext context) {
     return true;
 }
 
-static bool bench_parse(bench_options *o, int argc, const char **argv, poptContext *context) {
-    sweep_options *s = &o->order.options;
-    const struct poptOption options[] = {
-        {"output", 'o', POPT_ARG_STRING, &o->order.folder, 0,
-         "folder of the results (default: out/bench/NAME)", "DIR"},
-        {"list", 0, POPT_ARG_NONE, &o->list, 0, "list the rows and measure nothing", NULL},
-        {"rows", 0, POPT_ARG_STRING, &o->order.choice.rows, 0,
-         "only rows whose label matches ('steps 16*')", "PATTERN"},
-        {"only", 0, POPT_ARG_STRING, NULL, OPTION_ONLY,
-         "only rows with this value of an axis; may be given several times", "AXIS=VALUE"},
-        {"shard", 0, POPT_ARG_STRING, NULL, OPTION_SHARD, "only every N-th row, from the I-th",
-         "I/N"},
-        {"merge", 0, POPT_ARG_NONE, &o->merge, 0, "combine the results of shards", NULL},
-        {"resume", 0, POPT_ARG_NONE, &o->resume, 0, "keep the rows that are in DIR already", NULL},
-        {"baseline", 0, POPT_ARG_STRING, &o->baseline, 0,
-         "report what is faster or slower than in these results", "DIR|FILE.json"},
-        {"report", 0, POPT_ARG_STRING, &o->report, 0,
-         "write the report of these results again, and measure nothing", "DIR"},
-        {"margin", 0, POPT_ARG_DOUBLE, &o->margin, 0,
-         "changes up to this are noise, whatever statistics say (default: 3)", "PERCENT"},
-        {"strict", 0, POPT_ARG_NONE, &o->strict, 0,
-         "end with status 3 when a row is slower than its baseline", NULL},
-        {"size", 's', POPT_ARG_STRING, NULL, OPTION_SIZE,
-         "size of pictures instead of the sweep's; an axis of sizes is scaled to it", "WxH"},
-        {"frames", 'f', POPT_ARG_STRING, &o->frames_text, 0, "frames instead of the sweep's",
-         "FRAMES"},
-        {"warmup", 0, POPT_ARG_INT, &s->warmup, 0, "frames that are drawn before the first one",
-         "N"},
-        {"repeats", 0, POPT_ARG_INT, &s->repeats, 0, "how often each row is measured", "N"},
-        {"limit", 0, POPT_ARG_DOUBLE, &s->limit, 0, "time limit of a row; 0: none", "SECONDS"},
-        {"settle", 0, POPT_ARG_DOUBLE, &s->settle, 0,
-         "how long a row is drawn before it is timed, so that clocks rise", "SECONDS"},
-        {"no-reference", 0, POPT_ARG_NONE, &o->no_reference, 0,
-         "draw no references, and compare no pictures", NULL},
-        APP_DEVICE_ROW(&o->order.device),
-        APP_MEMORY_ROW(&o->order.memory),
-        POPT_AUTOHELP POPT_TABLEEND};
-    *context = app_options("roil bench", argc, argv, options, "SWEEP.lua [options]");
-    int option;
-    while ((option = poptGetNextOpt(*context)) > 0)
-        if (!take_option(o, *context, option)) return false;
-    if (option < -1) return app_refuse_option(*context, options, option);
+static bool bench_check(void *user, poptContext arguments) {
+    bench_options *o = user;
     o->order.resume = o->resume;
-    s->no_reference = o->no_reference;
+    o->order.options.no_reference = o->no_reference;
     o->order.choice.only = o->only;
     o->order.choice.only_count = o->only_count;
-    return take_numbers(o) && take_inputs(o, *context);
+    return take_numbers(o) && take_inputs(o, arguments);
 }
 
 // ---- progress -----------------------------------------------------------------------------------
@@ -259,20 +217,59 @@ static int bench_write_report(const bench_options *o) {
     return status;
 }
 
+static int bench_do(void *user) {
+    bench_options *o = user;
+    return o->report  ? bench_write_report(o)
+           : o->merge ? bench_merge_files(o)
+           : o->list  ? bench_list_rows(o)
+                      : bench_run_sweep(o);
+}
+
 int cmd_bench(int argc, const char **argv) {
     bench_options o = {.margin = 3};
-    o.order.options = (sweep_options){.warmup = -1, .repeats = -1, .limit = -1, .settle = -1};
-    poptContext context;
-    int status;
-    if (!bench_parse(&o, argc, argv, &context))
-        status = app_fail(APP_BAD_USAGE, "bench: %s", roil_error());
-    else
-        status = o.report  ? bench_write_report(&o)
-                 : o.merge ? bench_merge_files(&o)
-                 : o.list  ? bench_list_rows(&o)
-                           : bench_run_sweep(&o);
-    poptFreeContext(context);
-    app_free_frames(&o.frames);
+    sweep_options *s = &o.order.options;
+    *s = (sweep_options){.warmup = -1, .repeats = -1, .limit = -1, .settle = -1};
+    const struct poptOption options[] = {
+        {"output", 'o', POPT_ARG_STRING, &o.order.folder, 0,
+         "folder of the results (default: out/bench/NAME)", "DIR"},
+        {"list", 0, POPT_ARG_NONE, &o.list, 0, "list the rows and measure nothing", NULL},
+        {"rows", 0, POPT_ARG_STRING, &o.order.choice.rows, 0,
+         "only rows whose label matches ('steps 16*')", "PATTERN"},
+        {"only", 0, POPT_ARG_STRING, NULL, OPTION_ONLY,
+         "only rows with this value of an axis; may be given several times", "AXIS=VALUE"},
+        {"shard", 0, POPT_ARG_STRING, NULL, OPTION_SHARD, "only every N-th row, from the I-th",
+         "I/N"},
+        {"merge", 0, POPT_ARG_NONE, &o.merge, 0, "combine the results of shards", NULL},
+        {"resume", 0, POPT_ARG_NONE, &o.resume, 0, "keep the rows that are in DIR already", NULL},
+        {"baseline", 0, POPT_ARG_STRING, &o.baseline, 0,
+         "report what is faster or slower than in these results", "DIR|FILE.json"},
+        {"report", 0, POPT_ARG_STRING, &o.report, 0,
+         "write the report of these results again, and measure nothing", "DIR"},
+        {"margin", 0, POPT_ARG_DOUBLE, &o.margin, 0,
+         "changes up to this are noise, whatever statistics say (default: 3)", "PERCENT"},
+        {"strict", 0, POPT_ARG_NONE, &o.strict, 0,
+         "end with status 3 when a row is slower than its baseline", NULL},
+        {"size", 's', POPT_ARG_STRING, NULL, OPTION_SIZE,
+         "size of pictures instead of the sweep's; an axis of sizes is scaled to it", "WxH"},
+        {"frames", 'f', POPT_ARG_STRING, NULL, APP_FRAMES, "frames instead of the sweep's",
+         "FRAMES"},
+        {"warmup", 0, POPT_ARG_INT, &s->warmup, 0, "frames that are drawn before the first one",
+         "N"},
+        {"repeats", 0, POPT_ARG_INT, &s->repeats, 0, "how often each row is measured", "N"},
+        {"limit", 0, POPT_ARG_DOUBLE, &s->limit, 0, "time limit of a row; 0: none", "SECONDS"},
+        {"settle", 0, POPT_ARG_DOUBLE, &s->settle, 0,
+         "how long a row is drawn before it is timed, so that clocks rise", "SECONDS"},
+        {"no-reference", 0, POPT_ARG_NONE, &o.no_reference, 0,
+         "draw no references, and compare no pictures", NULL},
+        APP_DEVICE_ROW(&o.order.device),
+        APP_MEMORY_ROW(&o.order.memory),
+        POPT_AUTOHELP POPT_TABLEEND};
+    int status = app_run(argc, argv, "roil bench", "SWEEP.lua [options]", options,
+                         &(app_task){.job = &o,
+                                     .check = bench_check,
+                                     .run = bench_do,
+                                     .take = take_option,
+                                     .frames = &o.frames});
     mem_free(o.only);
     mem_free(o.inputs);
     return status;

@@ -1,6 +1,7 @@
 // roil bundle EFFECT.lua: one file with the effect and all that it reads.
 #include "app/app.h"
 #include "app/device_options.h"
+#include "base/error.h"
 #include "base/file.h"
 #include "base/str.h"
 #include <popt.h>
@@ -16,6 +17,10 @@ static void warn_of_rights(const roil_inputs *in) {
                   : in->info.licence ? "author"
                                      : "author and licence");
 }
+
+typedef struct bundle_job {
+    const char *effect, *output, **assets, *memory;
+} bundle_job;
 
 static int make(roil *r, const char *effect, const char *output) {
     char place[PATH_CAP];
@@ -44,42 +49,36 @@ static int make(roil *r, const char *effect, const char *output) {
     return done ? APP_DONE : app_fail_input();
 }
 
-static int pack(const char *effect, const char *output, const roil_desc *desc) {
-    roil *r = roil_create(desc);
-    int status = r ? make(r, effect, output) : app_fail_input();
+static int pack(void *user) {
+    const bundle_job *j = user;
+    app_progress files = {0};
+    roil *r = roil_create(&(roil_desc){.no_device = true,
+                                       .assets = j->assets,
+                                       .memory = j->memory,
+                                       .loading = app_tell_files,
+                                       .user = &files});
+    int status = r ? make(r, j->effect, j->output) : app_fail_input();
     roil_destroy(r);
     return status;
 }
 
+static bool bundle_check(void *user, poptContext arguments) {
+    bundle_job *j = user;
+    j->effect = poptGetArg(arguments);
+    if (!j->effect || poptPeekArg(arguments))
+        return err_set("one effect is packed, as in `roil bundle fire.lua -o fire.roil`");
+    return !j->output || str_ends_with(j->output, ".roil") ||
+           err_set("-o %s; a bundle's name ends with .roil", j->output);
+}
+
 int cmd_bundle(int argc, const char **argv) {
-    const char *output = NULL, **assets = NULL, *memory = NULL;
-    app_progress files = {0};
-    const struct poptOption options[] = {{"output", 'o', POPT_ARG_STRING, &output, 0,
+    bundle_job j = {0};
+    const struct poptOption options[] = {{"output", 'o', POPT_ARG_STRING, &j.output, 0,
                                           "the bundle (default: EFFECT.roil in the current folder)",
                                           "NAME.roil"},
-                                         APP_ASSETS_ROW(&assets),
-                                         APP_MEMORY_ROW(&memory),
+                                         APP_ASSETS_ROW(&j.assets),
+                                         APP_MEMORY_ROW(&j.memory),
                                          POPT_AUTOHELP POPT_TABLEEND};
-    poptContext context =
-        app_options("roil bundle", argc, argv, options, "EFFECT.lua [-o NAME.roil]");
-    int code = poptGetNextOpt(context), status;
-    const char *effect = poptGetArg(context), *more = poptGetArg(context);
-    if (code < -1) {
-        app_refuse_option(context, options, code);
-        status = app_fail(APP_BAD_USAGE, "bundle: %s", roil_error());
-    } else if (!effect || more) {
-        status = app_fail(APP_BAD_USAGE, "bundle: one effect is packed, as in `roil bundle "
-                                         "fire.lua -o fire.roil`");
-    } else if (output && !str_ends_with(output, ".roil")) {
-        status = app_fail(APP_BAD_USAGE, "bundle: -o %s; a bundle's name ends with .roil", output);
-    } else {
-        status = pack(effect, output,
-                      &(roil_desc){.no_device = true,
-                                   .assets = assets,
-                                   .memory = memory,
-                                   .loading = app_tell_files,
-                                   .user = &files});
-    }
-    poptFreeContext(context);
-    return status;
+    return app_run(argc, argv, "roil bundle", "EFFECT.lua [-o NAME.roil]", options,
+                   &(app_task){.job = &j, .check = bundle_check, .run = pack});
 }

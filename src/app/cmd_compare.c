@@ -15,7 +15,7 @@
 
 typedef struct compare_job {
     roil_comparison how;
-    const char *json;
+    const char *json, *memory;
     double max_flip, min_psnr; // 1 and -INFINITY: no limit
 } compare_job;
 
@@ -56,7 +56,8 @@ static int check_limits(const compare_job *job, const roil_difference *d) {
     return status;
 }
 
-static int compare_pictures(const compare_job *job) {
+static int compare_pictures(void *user) {
+    compare_job *job = user;
     roil_difference d;
     if (!roil_compare(&job->how, &d)) return app_fail_input();
     print_difference(&d);
@@ -64,14 +65,22 @@ static int compare_pictures(const compare_job *job) {
     return check_limits(job, &d);
 }
 
-static int usage(const char *message) {
-    return app_fail(APP_BAD_USAGE, "compare: %s; usage: roil compare A B [-o DIFFERENCE.png]",
-                    message);
+static bool usage(const char *message) {
+    return err_set("%s; usage: roil compare A B [-o DIFFERENCE.png]", message);
+}
+
+static bool compare_check(void *user, poptContext arguments) {
+    compare_job *job = user;
+    job->how.a = poptGetArg(arguments);
+    job->how.b = poptGetArg(arguments);
+    if (!job->how.b || poptPeekArg(arguments)) return usage("two pictures are compared");
+    if (!(job->max_flip >= 0 && job->max_flip <= 1)) return usage("--max-flip is 0 to 1");
+    if (isnan(job->min_psnr)) return usage("--min-psnr is a number of dB");
+    return !job->memory || budget_set_share(job->memory) || err_prefix("--");
 }
 
 int cmd_compare(int argc, const char **argv) {
     compare_job job = {.max_flip = 1, .min_psnr = -INFINITY};
-    const char *memory = NULL;
     const struct poptOption options[] = {
         {"output", 'o', POPT_ARG_STRING, &job.how.difference, 0,
          "picture of FLIP: black where both look the same", "DIFFERENCE.png"},
@@ -88,27 +97,8 @@ int cmd_compare(int argc, const char **argv) {
          "EV"},
         {"ppd", 0, POPT_ARG_DOUBLE, &job.how.pixels_per_degree, 0,
          "pixels per degree of the observer's sight, for FLIP (default: 67)", "X"},
-        APP_MEMORY_ROW(&memory),
+        APP_MEMORY_ROW(&job.memory),
         POPT_AUTOHELP POPT_TABLEEND};
-    poptContext context =
-        app_options("roil compare", argc, argv, options, "A.png|A.exr B.png|B.exr");
-    int code = poptGetNextOpt(context), status;
-    job.how.a = poptGetArg(context);
-    job.how.b = poptGetArg(context);
-    if (code < -1) {
-        app_refuse_option(context, options, code);
-        status = app_fail(APP_BAD_USAGE, "compare: %s", roil_error());
-    } else if (!job.how.b || poptPeekArg(context)) {
-        status = usage("two pictures are compared");
-    } else if (!(job.max_flip >= 0 && job.max_flip <= 1)) {
-        status = usage("--max-flip is 0 to 1");
-    } else if (isnan(job.min_psnr)) {
-        status = usage("--min-psnr is a number of dB");
-    } else if (memory && !budget_set_share(memory)) {
-        status = app_fail(APP_BAD_USAGE, "compare: --%s", roil_error());
-    } else {
-        status = compare_pictures(&job);
-    }
-    poptFreeContext(context);
-    return status;
+    return app_run(argc, argv, "roil compare", "A.png|A.exr B.png|B.exr", options,
+                   &(app_task){.job = &job, .check = compare_check, .run = compare_pictures});
 }

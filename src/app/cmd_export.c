@@ -2,15 +2,36 @@
 // vdb` is in export_vdb.c, `roil export sheet` in export_sheet.c.
 #include "app/app.h"
 #include "app/device_options.h"
+#include "base/error.h"
 #include <popt.h>
 #include <stdio.h>
 #include <string.h>
 
-static int usage(const char *message) {
-    return app_fail(APP_BAD_USAGE,
-                    "export: %s; usage: roil export raw 'FILES*.vdb' -o FILE.raw, roil export "
-                    "vdb EFFECT.lua -o DIR/%%04d.vdb, or roil export sheet EFFECT.lua -o fire.png",
-                    message);
+static bool usage(const char *message) {
+    return err_set(
+        "%s; usage: roil export raw 'FILES*.vdb' -o FILE.raw, roil export vdb EFFECT.lua "
+        "-o DIR/%%04d.vdb, or roil export sheet EFFECT.lua -o fire.png",
+        message);
+}
+
+static bool raw_check(void *user, poptContext arguments) {
+    roil_export *job = user;
+    const char *format = poptGetArg(arguments);
+    job->pattern = poptGetArg(arguments);
+    if (!format) return usage("which format?");
+    if (strcmp(format, "raw") != 0) return usage("the first word is the format, raw, vdb or sheet");
+    if (!job->pattern) return usage("which files?");
+    if (poptPeekArg(arguments)) return usage("quote the pattern of the files");
+    return job->file || usage("-o is missing");
+}
+
+static int raw_write(void *user) {
+    const roil_export *job = user;
+    char *text = app_can_write(job->file) ? roil_export_raw(job) : NULL;
+    if (!text) return app_fail_input();
+    fputs(text, stdout);
+    roil_free(text);
+    return APP_DONE;
 }
 
 static int export_raw(int argc, const char **argv) {
@@ -21,32 +42,10 @@ static int export_raw(int argc, const char **argv) {
         {"grid", 'g', POPT_ARG_STRING, &job.grid, 0, "which grid (default: density)", "NAME"},
         {"type", 't', POPT_ARG_STRING, &job.type, 0, "u8, u16, f16 or f32 (default: u8)", "TYPE"},
         POPT_AUTOHELP POPT_TABLEEND};
-    poptContext context = app_options("roil export", argc, argv, options,
-                                      "raw 'FILES*.vdb' -o FILE.raw (see also: roil export vdb "
-                                      "--help, roil export sheet --help)");
-    int code = poptGetNextOpt(context), status = APP_DONE;
-    const char *format = poptGetArg(context);
-    job.pattern = poptGetArg(context);
-    if (code < -1) {
-        app_refuse_option(context, options, code);
-        status = app_fail(APP_BAD_USAGE, "export: %s", roil_error());
-    } else if (!format || strcmp(format, "raw") != 0) {
-        status =
-            usage(format ? "the first word is the format, raw, vdb or sheet" : "which format?");
-    } else if (!job.pattern || poptPeekArg(context)) {
-        status = usage(job.pattern ? "quote the pattern of the files" : "which files?");
-    } else if (!job.file) {
-        status = usage("-o is missing");
-    } else {
-        char *text = app_can_write(job.file) ? roil_export_raw(&job) : NULL;
-        if (text)
-            fputs(text, stdout);
-        else
-            status = app_fail_input();
-        roil_free(text);
-    }
-    poptFreeContext(context);
-    return status;
+    return app_run(argc, argv, "roil export",
+                   "raw 'FILES*.vdb' -o FILE.raw (see also: roil export vdb "
+                   "--help, roil export sheet --help)",
+                   options, &(app_task){.job = &job, .check = raw_check, .run = raw_write});
 }
 
 // Loads the effect anew after a look at it.

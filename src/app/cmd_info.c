@@ -130,7 +130,8 @@ static int info_index(const info_job *j) {
     return info_devices(j);
 }
 
-static int info(info_job *j) {
+static int info(void *user) {
+    info_job *j = user;
     static const char *const topics[] = {"device",  "passes", "fields",
                                          "effects", "params", "graph"};
     const char *what = j->what;
@@ -161,13 +162,19 @@ static int info(info_job *j) {
     return app_fail(APP_BAD_USAGE, "info: %s", roil_error());
 }
 
+static bool info_arguments(void *user, poptContext arguments) {
+    info_job *j = user;
+    j->what = poptGetArg(arguments);
+    j->name = poptGetArg(arguments);
+    return true;
+}
+
 int cmd_info(int argc, const char **argv) {
-    enum { OPTION_PRESET = 1, OPTION_SET };
     info_job j = {0};
     const struct poptOption options[] = {
-        {"preset", '\0', POPT_ARG_STRING, NULL, OPTION_PRESET,
+        {"preset", '\0', POPT_ARG_STRING, NULL, APP_PRESET,
          "of params, graph: with values kept beside the effect, or in a file", "NAME|FILE.lua"},
-        {"set", '\0', POPT_ARG_STRING, NULL, OPTION_SET, "of params, graph: as render takes it",
+        {"set", '\0', POPT_ARG_STRING, NULL, APP_SET, "of params, graph: as render takes it",
          "NAME=VALUE"},
         {"output", 'o', POPT_ARG_STRING, &j.output, 0, "of effects: a page with their pictures",
          "FILE.html"},
@@ -177,30 +184,10 @@ int cmd_info(int argc, const char **argv) {
         APP_ASSETS_ROW(&j.assets),
         APP_MEMORY_ROW(&j.memory),
         POPT_AUTOHELP POPT_TABLEEND};
-    poptContext context = app_options("roil info", argc, argv, options,
-                                      "[device | passes [NAME] | fields [NAME] | effects | params "
-                                      "EFFECT.lua | graph EFFECT.lua | FILE.vdb | "
-                                      "EFFECT.lua | FILE.roil]");
-    int code, status;
-    bool right = true;
-    while (right && (code = poptGetNextOpt(context)) > 0) {
-        char *text = poptGetOptArg(context);
-        if (code == OPTION_PRESET)
-            app_add_preset(&j.settings, text);
-        else
-            right = app_add_set(&j.settings, text);
-    }
-    if (!right) {
-        status = app_fail(APP_BAD_USAGE, "info: %s", roil_error());
-    } else if (code < -1) {
-        app_refuse_option(context, options, code);
-        status = app_fail(APP_BAD_USAGE, "info: %s", roil_error());
-    } else {
-        j.what = poptGetArg(context);
-        j.name = poptGetArg(context);
-        status = info(&j);
-    }
-    app_free_settings(&j.settings);
-    poptFreeContext(context);
-    return status;
+    return app_run(
+        argc, argv, "roil info",
+        "[device | passes [NAME] | fields [NAME] | effects | params EFFECT.lua | graph "
+        "EFFECT.lua | FILE.vdb | EFFECT.lua | FILE.roil]",
+        options,
+        &(app_task){.job = &j, .check = info_arguments, .run = info, .settings = &j.settings});
 }

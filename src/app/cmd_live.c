@@ -35,18 +35,10 @@ typedef struct job {
 
 // ---- options ----------------------------------------------------------------------------------
 
-enum { OPTION_SIZE = 1, OPTION_SET, OPTION_PRESET, OPTION_EVENT };
-
-// Handles one option of the table below; poptGetOptArg's text lives until the program ends.
-static bool take_option(job *j, poptContext context, int option) {
-    char *text = poptGetOptArg(context);
-    if (option == OPTION_SIZE) return app_parse_size(text, &j->width, &j->height);
-    if (option == OPTION_SET) return app_add_set(&j->settings, text);
-    if (option == OPTION_EVENT)
-        app_add_event(&j->settings, text);
-    else
-        app_add_preset(&j->settings, text);
-    return true;
+static bool take_size(void *user, int option, char *text) {
+    (void)option; // the only one
+    job *j = user;
+    return app_parse_size(text, &j->width, &j->height);
 }
 
 static int preview_of(const char *name) {
@@ -55,42 +47,12 @@ static int preview_of(const char *name) {
     return -1;
 }
 
-static bool live_check_options(const job *j, poptContext context) {
-    const char *more = j->file ? poptGetArg(context) : NULL;
-    if (more) return err_set("'%s': one effect at a time", more);
+static bool live_check_options(void *user, poptContext arguments) {
+    job *j = user;
+    if (poptPeekArg(arguments) && !app_take_effect(arguments, &j->file, "")) return false;
     if (j->preview && preview_of(j->preview) < 0)
         return err_set("--preview '%s'; accepted: full, half, quarter", j->preview);
     return app_check_device(&j->device);
-}
-
-static bool live_parse(job *j, int argc, const char **argv, poptContext *context) {
-    const struct poptOption options[] = {
-        {"size", 's', POPT_ARG_STRING, NULL, OPTION_SIZE,
-         "size of the window (default: that of the last time)", "WxH"},
-        {"set", '\0', POPT_ARG_STRING, NULL, OPTION_SET,
-         "a parameter, or a uniform or option of a pass (march.steps=64)", "NAME=VALUE"},
-        {"preset", 'p', POPT_ARG_STRING, NULL, OPTION_PRESET,
-         "values saved under a name beside the effect, or in a .lua file", "NAME"},
-        APP_EVENT_ROW(OPTION_EVENT),
-        {"frame", 'f', POPT_ARG_DOUBLE, &j->frame, 0,
-         "first frame to show (default: the effect's first)", "FRAME"},
-        {"paused", '\0', POPT_ARG_NONE, &j->paused, 0, "do not play at once", NULL},
-        {"preview", '\0', POPT_ARG_STRING, &j->preview, 0,
-         "size of the picture: full, half, quarter (default: that of the last time)", "SIZE"},
-        {"stats", '\0', POPT_ARG_STRING, &j->stats, 0,
-         "write how often the window was drawn and how soon it answered", "FILE.json"},
-        {"hidden-panel", '\0', POPT_ARG_NONE, &j->hidden_panel, 0, "show the picture alone", NULL},
-        app_device_rows(&j->device),
-        {"after-hang", '\0', POPT_ARG_STRING | POPT_ARGFLAG_DOC_HIDDEN, &j->after_hang, 0, NULL,
-         NULL},
-        POPT_AUTOHELP POPT_TABLEEND};
-    *context = app_options("roil live", argc, argv, options, "[EFFECT.lua] [options]");
-    int option;
-    while ((option = poptGetNextOpt(*context)) > 0)
-        if (!take_option(j, *context, option)) return false;
-    if (option < -1) return app_refuse_option(*context, options, option);
-    j->file = poptGetArg(*context);
-    return live_check_options(j, *context);
 }
 
 // ---- work -------------------------------------------------------------------------------------
@@ -258,7 +220,8 @@ static int live_run_window(job *j) {
 }
 
 // One window after the other: the start page, an effect, and what was opened in its window.
-static int run_windows(job *j) {
+static int run_windows(void *user) {
+    job *j = user;
     int status = APP_DONE;
     do {
         j->again = false;
@@ -275,12 +238,32 @@ static int run_windows(job *j) {
 
 int cmd_live(int argc, const char **argv) {
     job j = {.frame = (double)NAN};
-    poptContext context;
-    int status = live_parse(&j, argc, argv, &context)
-                     ? run_windows(&j)
-                     : app_fail(APP_BAD_USAGE, "live: %s", roil_error());
+    const struct poptOption options[] = {
+        {"size", 's', POPT_ARG_STRING, NULL, 1,
+         "size of the window (default: that of the last time)", "WxH"},
+        {"set", '\0', POPT_ARG_STRING, NULL, APP_SET,
+         "a parameter, or a uniform or option of a pass (march.steps=64)", "NAME=VALUE"},
+        {"preset", 'p', POPT_ARG_STRING, NULL, APP_PRESET,
+         "values saved under a name beside the effect, or in a .lua file", "NAME"},
+        APP_EVENT_ROW,
+        {"frame", 'f', POPT_ARG_DOUBLE, &j.frame, 0,
+         "first frame to show (default: the effect's first)", "FRAME"},
+        {"paused", '\0', POPT_ARG_NONE, &j.paused, 0, "do not play at once", NULL},
+        {"preview", '\0', POPT_ARG_STRING, &j.preview, 0,
+         "size of the picture: full, half, quarter (default: that of the last time)", "SIZE"},
+        {"stats", '\0', POPT_ARG_STRING, &j.stats, 0,
+         "write how often the window was drawn and how soon it answered", "FILE.json"},
+        {"hidden-panel", '\0', POPT_ARG_NONE, &j.hidden_panel, 0, "show the picture alone", NULL},
+        app_device_rows(&j.device),
+        {"after-hang", '\0', POPT_ARG_STRING | POPT_ARGFLAG_DOC_HIDDEN, &j.after_hang, 0, NULL,
+         NULL},
+        POPT_AUTOHELP POPT_TABLEEND};
+    int status = app_run(argc, argv, "roil live", "[EFFECT.lua] [options]", options,
+                         &(app_task){.job = &j,
+                                     .check = live_check_options,
+                                     .run = run_windows,
+                                     .take = take_size,
+                                     .settings = &j.settings});
     opening_free(&j.chosen);
-    poptFreeContext(context);
-    app_free_settings(&j.settings);
     return status;
 }

@@ -54,42 +54,43 @@ static bool make_all(roil *r, const char *file, const char *folder, const char *
     return done;
 }
 
-static int make(char *folder, const char *from, const char *const *assets) {
+typedef struct new_job {
+    const char *name, *from, **assets;
+} new_job;
+
+static int make(void *user) {
+    const new_job *j = user;
+    const char *from = j->from;
+    char *folder = mem_copy(j->name, strlen(j->name) + 1), file[PATH_CAP];
     while (strlen(folder) > 1 && str_ends_with(folder, "/")) folder[strlen(folder) - 1] = '\0';
     const char *name = name_of(folder);
-    if (!name || !is_free(folder)) return app_fail_input();
-    char file[PATH_CAP];
-    roil *r = roil_create(&(roil_desc){.no_device = true, .assets = assets});
+    bool is_good = name && is_free(folder);
+    roil *r = is_good ? roil_create(&(roil_desc){.no_device = true, .assets = j->assets}) : NULL;
     bool own = str_ends_with(from, ".lua") || str_ends_with(from, ".roil");
     bool found = r && (own ? app_check_effect(from) && str_copy(file, sizeof file, from)
                            : starts_find(roil_home(r), from, file));
     int status = found && make_all(r, file, folder, name) ? APP_DONE : app_fail_input();
     roil_destroy(r);
+    mem_free(folder);
     return status;
 }
 
+static bool new_check(void *user, poptContext arguments) {
+    new_job *j = user;
+    j->name = poptGetArg(arguments);
+    return (j->name && !poptPeekArg(arguments)) ||
+           err_set("one name is needed, as in `roil new my-fire`");
+}
+
 int cmd_new(int argc, const char **argv) {
-    const char *from = "campfire", **assets = NULL;
+    new_job j = {.from = "campfire"};
     const struct poptOption options[] = {
-        {"from", '\0', POPT_ARG_STRING, &from, 0,
+        {"from", '\0', POPT_ARG_STRING, &j.from, 0,
          "what it begins as: campfire, fire, smoke, burst, or one of `roil info effects` (default: "
          "campfire)",
          "EFFECT|FILE.lua|FILE.roil"},
-        APP_ASSETS_ROW(&assets),
+        APP_ASSETS_ROW(&j.assets),
         POPT_AUTOHELP POPT_TABLEEND};
-    poptContext context = app_options("roil new", argc, argv, options, "NAME [--from EFFECT]");
-    int code = poptGetNextOpt(context), status;
-    const char *name = poptGetArg(context), *more = poptGetArg(context);
-    if (code < -1) {
-        app_refuse_option(context, options, code);
-        status = app_fail(APP_BAD_USAGE, "new: %s", roil_error());
-    } else if (!name || more) {
-        status = app_fail(APP_BAD_USAGE, "new: one name is needed, as in `roil new my-fire`");
-    } else {
-        char *folder = mem_copy(name, strlen(name) + 1);
-        status = make(folder, from, assets);
-        mem_free(folder);
-    }
-    poptFreeContext(context);
-    return status;
+    return app_run(argc, argv, "roil new", "NAME [--from EFFECT]", options,
+                   &(app_task){.job = &j, .check = new_check, .run = make});
 }

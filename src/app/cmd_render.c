@@ -31,7 +31,6 @@ typedef struct job {
     app_settings settings;
     app_device device;
     app_frames frames;
-    const char *frames_text;
     uint32_t width, height;
     int alpha, premultiplied, sixteen, full, shown;
     int warmup;             // frames
@@ -52,12 +51,9 @@ typedef struct job {
 enum {
     OPTION_OUTPUT = 1,
     OPTION_SIZE,
-    OPTION_SET,
     OPTION_DUMP,
-    OPTION_PRESET,
     OPTION_REFERENCE,
     OPTION_SAMPLES,
-    OPTION_EVENT,
     OPTION_SHARD,
 };
 
@@ -73,28 +69,19 @@ static bool add_output(job *j, const char *pattern, const char *image) {
     return true;
 }
 
-// Handles one option of the table below; poptGetOptArg's text lives until the program ends.
-static bool take_option(job *j, poptContext context, int option) {
-    char *text = poptGetOptArg(context);
+static bool take_option(void *user, int option, char *text) {
+    job *j = user;
     switch (option) {
     case OPTION_OUTPUT:
         return add_output(j, text, NULL);
     case OPTION_SIZE:
         return app_parse_size(text, &j->width, &j->height);
-    case OPTION_SET:
-        return app_add_set(&j->settings, text);
     case OPTION_REFERENCE:
         return app_parse_samples("--reference", text, &j->reference);
     case OPTION_SAMPLES:
         return app_parse_samples("--samples", text, &j->samples);
     case OPTION_SHARD:
         return app_parse_shard(text, &j->shard, &j->shards);
-    case OPTION_PRESET:
-        app_add_preset(&j->settings, text);
-        return true;
-    case OPTION_EVENT:
-        app_add_event(&j->settings, text);
-        return true;
     case OPTION_DUMP: { // NAME and FILE, joined by join_dump
         char *file = strchr(text, '\n');
         if (!file) return err_set("--dump-pass wants NAME FILE");
@@ -140,83 +127,12 @@ static bool render_check_parts(const job *j) {
            (!j->restore || app_check_pattern(j->restore));
 }
 
-static bool render_parse(job *j, int argc, const char **argv, poptContext *context) {
-    const struct poptOption options[] = {
-        {"output", 'o', POPT_ARG_STRING, NULL, OPTION_OUTPUT,
-         "PNG or EXR file or pattern, or a film (.mp4, .webm, .mov, .gif, .apng); may be given "
-         "several times (default: "
-         "out/NAME/%04d.png)",
-         "FILE"},
-        {"frames", 'f', POPT_ARG_STRING, &j->frames_text, 0,
-         "30, or 10,30,50, or 1-100, or 1-100:2 (default: all)", "FRAMES"},
-        {"warmup", '\0', POPT_ARG_INT, &j->warmup, 0,
-         "draw N frames before each that does not follow the last, for passes with histories "
-         "(default: 0)",
-         "N"},
-        {"size", 's', POPT_ARG_STRING, NULL, OPTION_SIZE, "size of the picture (default: 960x540)",
-         "WxH"},
-        {"set", '\0', POPT_ARG_STRING, NULL, OPTION_SET,
-         "a parameter, or a uniform or option of a pass (march.steps=64)", "NAME=VALUE"},
-        {"preset", '\0', POPT_ARG_STRING, NULL, OPTION_PRESET,
-         "values saved beside the effect, or in a file; --set wins over them", "NAME|FILE.lua"},
-        APP_EVENT_ROW(OPTION_EVENT),
-        {"from", '\0', POPT_ARG_STRING, &j->from_file, 0,
-         "use the effect, frame, size and settings of this picture where no others are given",
-         "SHOT.png"},
-        {"restore", '\0', POPT_ARG_STRING, &j->restore, 0,
-         "continue the simulation from this file, by default with the frame after it; of a "
-         "pattern, from the last before the frames",
-         "FILE|PATTERN"},
-        {"checkpoint", '\0', POPT_ARG_STRING, &j->checkpoint, 0,
-         "write the state of the simulation after the last frame", "FILE|PATTERN"},
-        {"checkpoint-every", '\0', POPT_ARG_INT, &j->checkpoint_every, 0,
-         "write it after each N-th frame of the effect too", "N"},
-        {"simulate-only", '\0', POPT_ARG_NONE, &j->simulates, 0,
-         "draw no pictures: simulate the frames, for --checkpoint", NULL},
-        {"shard", '\0', POPT_ARG_STRING, NULL, OPTION_SHARD,
-         "only the I-th of N equal parts of the frames", "I/N"},
-        {"skip-existing", '\0', POPT_ARG_NONE, &j->skips, 0,
-         "leave out frames whose pictures are there, and whole", NULL},
-        {"reference", '\0', POPT_ARG_STRING, NULL, OPTION_REFERENCE,
-         "replace each pass march by a path tracer with so many samples per pixel", "SPP"},
-        {"samples", '\0', POPT_ARG_STRING, NULL, OPTION_SAMPLES,
-         "average N pictures of each frame, in linear light, for smooth edges, motion blur and a "
-         "lens",
-         "N"},
-        {"shutter", '\0', POPT_ARG_DOUBLE, &j->shutter, 0,
-         "frames that these are spread over, 0 to 1, from the frame on (default: 0.5, a shutter "
-         "of 180 degrees)",
-         "FRAMES"},
-        {"stats", '\0', POPT_ARG_STRING, &j->stats, 0,
-         "write GPU milliseconds by pass, samples taken, what is slow and the device as JSON",
-         "FILE.json"},
-        {"dump-pass", '\0', POPT_ARG_STRING, NULL, OPTION_DUMP,
-         "also save an image of the graph: a pass, or march.edge", "NAME FILE"},
-        {"fps", '\0', POPT_ARG_DOUBLE, &j->fps, 0,
-         "frames per second of the video (default: the effect's)", "FPS"},
-        {"alpha", '\0', POPT_ARG_NONE, &j->alpha, 0,
-         "keep straight alpha in PNG files and films: bright light with little alpha is clipped at "
-         "white",
-         NULL},
-        {"premultiplied", '\0', POPT_ARG_NONE, &j->premultiplied, 0,
-         "keep alpha in PNG files, with colours as they appear on black: nothing is clipped", NULL},
-        {"16", '\0', POPT_ARG_NONE, &j->sixteen, 0, "16 bits a channel in PNG files", NULL},
-        {"float", '\0', POPT_ARG_NONE, &j->full, 0, "32-bit float in EXR files (default: half)",
-         NULL},
-        {"shown", '\0', POPT_ARG_NONE, &j->shown, 0,
-         "EXR files of the tone-mapped picture with alpha, linear and premultiplied", NULL},
-        app_device_rows(&j->device),
-        POPT_AUTOHELP POPT_TABLEEND};
-    *context = app_options("roil render", argc, argv, options, "EFFECT.lua [options]");
-    int option;
-    while ((option = poptGetNextOpt(*context)) > 0)
-        if (!take_option(j, *context, option)) return false;
-    if (option < -1) return app_refuse_option(*context, options, option);
-    j->file = poptGetArg(*context);
-    if (!j->file && !j->from_file)
-        return err_set("which effect? usage: roil render EFFECT.lua [options]");
-    const char *more = poptGetArg(*context);
-    if (more) return err_set("'%s': one effect at a time", more);
+static bool render_check(void *user, poptContext arguments) {
+    job *j = user;
+    if ((poptPeekArg(arguments) || !j->from_file) &&
+        !app_take_effect(arguments, &j->file,
+                         "which effect? usage: roil render EFFECT.lua [options]"))
+        return false;
     if (j->warmup < 0 || j->warmup > 100000)
         return err_set("--warmup %d; accepted: 0 to 100000 frames", j->warmup);
     if (!app_check_shutter(j->shutter)) return false;
@@ -224,9 +140,7 @@ static bool render_parse(job *j, int argc, const char **argv, poptContext *conte
     if (j->alpha && j->premultiplied)
         return err_set("--alpha is straight, --premultiplied is not: one of the two");
     if (j->warmup && j->restore) return err_set("--warmup and --restore exclude each other");
-    if (!render_check_parts(j)) return false;
-    return app_check_device(&j->device) &&
-           (!j->frames_text || app_parse_frames(j->frames_text, &j->frames));
+    return render_check_parts(j) && app_check_device(&j->device);
 }
 
 // ---- work -------------------------------------------------------------------------------------
@@ -456,7 +370,8 @@ static bool close_outputs(job *j, bool done) {
     return done;
 }
 
-static int render_run(job *j) {
+static int render_run(void *user) {
+    job *j = user;
     if (!complete_from(j)) return app_fail_input();
     roil_desc desc = app_device_desc(&j->device);
     desc.counters = j->stats != NULL;
@@ -499,15 +414,81 @@ static int render_run(job *j) {
 int cmd_render(int argc, const char **argv) {
     job j = {.frames.step = 1, .shutter = 0.5};
     arena memory = {0};
-    poptContext context;
+    const struct poptOption options[] = {
+        {"output", 'o', POPT_ARG_STRING, NULL, OPTION_OUTPUT,
+         "PNG or EXR file or pattern, or a film (.mp4, .webm, .mov, .gif, .apng); may be given "
+         "several times (default: "
+         "out/NAME/%04d.png)",
+         "FILE"},
+        {"frames", 'f', POPT_ARG_STRING, NULL, APP_FRAMES,
+         "30, or 10,30,50, or 1-100, or 1-100:2 (default: all)", "FRAMES"},
+        {"warmup", '\0', POPT_ARG_INT, &j.warmup, 0,
+         "draw N frames before each that does not follow the last, for passes with histories "
+         "(default: 0)",
+         "N"},
+        {"size", 's', POPT_ARG_STRING, NULL, OPTION_SIZE, "size of the picture (default: 960x540)",
+         "WxH"},
+        {"set", '\0', POPT_ARG_STRING, NULL, APP_SET,
+         "a parameter, or a uniform or option of a pass (march.steps=64)", "NAME=VALUE"},
+        {"preset", '\0', POPT_ARG_STRING, NULL, APP_PRESET,
+         "values saved beside the effect, or in a file; --set wins over them", "NAME|FILE.lua"},
+        APP_EVENT_ROW,
+        {"from", '\0', POPT_ARG_STRING, &j.from_file, 0,
+         "use the effect, frame, size and settings of this picture where no others are given",
+         "SHOT.png"},
+        {"restore", '\0', POPT_ARG_STRING, &j.restore, 0,
+         "continue the simulation from this file, by default with the frame after it; of a "
+         "pattern, from the last before the frames",
+         "FILE|PATTERN"},
+        {"checkpoint", '\0', POPT_ARG_STRING, &j.checkpoint, 0,
+         "write the state of the simulation after the last frame", "FILE|PATTERN"},
+        {"checkpoint-every", '\0', POPT_ARG_INT, &j.checkpoint_every, 0,
+         "write it after each N-th frame of the effect too", "N"},
+        {"simulate-only", '\0', POPT_ARG_NONE, &j.simulates, 0,
+         "draw no pictures: simulate the frames, for --checkpoint", NULL},
+        {"shard", '\0', POPT_ARG_STRING, NULL, OPTION_SHARD,
+         "only the I-th of N equal parts of the frames", "I/N"},
+        {"skip-existing", '\0', POPT_ARG_NONE, &j.skips, 0,
+         "leave out frames whose pictures are there, and whole", NULL},
+        {"reference", '\0', POPT_ARG_STRING, NULL, OPTION_REFERENCE,
+         "replace each pass march by a path tracer with so many samples per pixel", "SPP"},
+        {"samples", '\0', POPT_ARG_STRING, NULL, OPTION_SAMPLES,
+         "average N pictures of each frame, in linear light, for smooth edges, motion blur and a "
+         "lens",
+         "N"},
+        {"shutter", '\0', POPT_ARG_DOUBLE, &j.shutter, 0,
+         "frames that these are spread over, 0 to 1, from the frame on (default: 0.5, a shutter "
+         "of 180 degrees)",
+         "FRAMES"},
+        {"stats", '\0', POPT_ARG_STRING, &j.stats, 0,
+         "write GPU milliseconds by pass, samples taken, what is slow and the device as JSON",
+         "FILE.json"},
+        {"dump-pass", '\0', POPT_ARG_STRING, NULL, OPTION_DUMP,
+         "also save an image of the graph: a pass, or march.edge", "NAME FILE"},
+        {"fps", '\0', POPT_ARG_DOUBLE, &j.fps, 0,
+         "frames per second of the video (default: the effect's)", "FPS"},
+        {"alpha", '\0', POPT_ARG_NONE, &j.alpha, 0,
+         "keep straight alpha in PNG files and films: bright light with little alpha is clipped at "
+         "white",
+         NULL},
+        {"premultiplied", '\0', POPT_ARG_NONE, &j.premultiplied, 0,
+         "keep alpha in PNG files, with colours as they appear on black: nothing is clipped", NULL},
+        {"16", '\0', POPT_ARG_NONE, &j.sixteen, 0, "16 bits a channel in PNG files", NULL},
+        {"float", '\0', POPT_ARG_NONE, &j.full, 0, "32-bit float in EXR files (default: half)",
+         NULL},
+        {"shown", '\0', POPT_ARG_NONE, &j.shown, 0,
+         "EXR files of the tone-mapped picture with alpha, linear and premultiplied", NULL},
+        app_device_rows(&j.device),
+        POPT_AUTOHELP POPT_TABLEEND};
     argv = join_dump(&argc, argv, &memory);
-    int status = render_parse(&j, argc, argv, &context)
-                     ? render_run(&j)
-                     : app_fail(APP_BAD_USAGE, "render: %s", roil_error());
-    poptFreeContext(context);
-    app_free_frames(&j.frames);
+    int status = app_run(argc, argv, "roil render", "EFFECT.lua [options]", options,
+                         &(app_task){.job = &j,
+                                     .check = render_check,
+                                     .run = render_run,
+                                     .take = take_option,
+                                     .settings = &j.settings,
+                                     .frames = &j.frames});
     mem_free(j.outputs);
-    app_free_settings(&j.settings);
     roil_free_recipe(j.from);
     arena_free(&memory);
     return status;

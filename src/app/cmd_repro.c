@@ -248,7 +248,8 @@ static void remove_folder(const job *j) {
     rmdir(j->folder);
 }
 
-static int repro(job *j) {
+static int repro(void *user) {
+    job *j = user;
     const char *effect;
     int status = APP_BAD_INPUT;
     if (!prepare(j, &effect)) {
@@ -272,30 +273,23 @@ static int repro(job *j) {
     return status;
 }
 
+static bool repro_check(void *user, poptContext arguments) {
+    job *j = user;
+    j->file = poptGetArg(arguments);
+    j->named = poptGetArg(arguments);
+    if (!j->file || poptPeekArg(arguments))
+        return err_set("one file is made again, as in `roil repro shot.png`");
+    return app_check_device(&j->device);
+}
+
 int cmd_repro(int argc, const char **argv) {
     job *j = mem_alloc(sizeof *j);
     const struct poptOption options[] = {
         {"output", 'o', POPT_ARG_STRING, &j->output, 0, "keep what was made again", "FILE"},
         app_device_rows(&j->device),
         POPT_AUTOHELP POPT_TABLEEND};
-    poptContext context = app_options("roil repro", argc, argv, options,
-                                      "FILE.png|exr|mp4|vdb|json|html [EFFECT.lua]");
-    int code = poptGetNextOpt(context), status;
-    j->file = poptGetArg(context);
-    j->named = poptGetArg(context);
-    const char *more = poptGetArg(context);
-    if (code < -1) {
-        app_refuse_option(context, options, code);
-        status = app_fail(APP_BAD_USAGE, "repro: %s", roil_error());
-    } else if (!j->file || more) {
-        status = app_fail(APP_BAD_USAGE, "repro: one file is made again, as in `roil repro "
-                                         "shot.png`");
-    } else if (!app_check_device(&j->device)) {
-        status = app_fail(APP_BAD_USAGE, "repro: %s", roil_error());
-    } else {
-        status = repro(j);
-    }
-    poptFreeContext(context);
+    int status = app_run(argc, argv, "roil repro", "FILE.png|exr|mp4|vdb|json|html [EFFECT.lua]",
+                         options, &(app_task){.job = j, .check = repro_check, .run = repro});
     mem_free(j);
     return status;
 }

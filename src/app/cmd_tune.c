@@ -12,13 +12,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { OPTION_SIZE = 1, OPTION_SET, OPTION_PRESET, OPTION_AXES, OPTION_REFERENCE };
+enum { OPTION_SIZE = 1, OPTION_AXES, OPTION_REFERENCE };
 
 typedef struct tune_options {
     tune_order order;
     app_settings settings;
     app_frames frames;
-    const char *frames_text, *error, *preset, *memory;
+    const char *error, *preset, *memory;
     double max_ms, max_error;
     const char **axes;
     size_t axis_count, axis_capacity;
@@ -38,23 +38,15 @@ static bool add_axes(tune_options *o, char *text) {
     return o->axis_count > 0 || err_set("--axes names no axis");
 }
 
-// popt's texts live until the program ends.
-static bool take_option(tune_options *o, poptContext context, int option) {
-    char *text = poptGetOptArg(context);
+static bool take_option(void *user, int option, char *text) {
+    tune_options *o = user;
     switch (option) {
     case OPTION_SIZE:
         return app_parse_size(text, &o->order.width, &o->order.height);
-    case OPTION_SET:
-        return app_add_set(&o->settings, text);
-    case OPTION_PRESET:
-        app_add_preset(&o->settings, text);
-        return true;
     case OPTION_AXES:
         return add_axes(o, text);
-    case OPTION_REFERENCE:
-        return app_parse_samples("--reference", text, &o->order.samples);
     }
-    return true;
+    return app_parse_samples("--reference", text, &o->order.samples);
 }
 
 static bool take_goal(tune_options *o) {
@@ -74,13 +66,11 @@ static bool take_goal(tune_options *o) {
     return true;
 }
 
-static bool take_effect(tune_options *o, poptContext context) {
+static bool take_effect(tune_options *o, poptContext arguments) {
     tune_order *order = &o->order;
-    order->effect = poptGetArg(context);
-    if (!order->effect)
-        return err_set("which effect? usage: roil tune EFFECT.lua --max-ms MS | --max-error E");
-    const char *more = poptGetArg(context);
-    if (more) return err_set("'%s': one effect at a time", more);
+    if (!app_take_effect(arguments, &order->effect,
+                         "which effect? usage: roil tune EFFECT.lua --max-ms MS | --max-error E"))
+        return false;
     int length;
     const char *name = path_stem(order->effect, &length);
     snprintf(o->folder, sizeof o->folder, "out/tune/%.*s", length, name);
@@ -96,58 +86,14 @@ static bool take_numbers(tune_options *o) {
     o->order.axes = o->axes;
     o->order.axis_count = o->axis_count;
     o->order.preset = o->preset;
-    if (!o->frames_text) return true;
-    if (!app_parse_frames(o->frames_text, &o->frames)) return false;
     o->order.frames = o->frames.numbers;
     o->order.frame_count = o->frames.count;
     return true;
 }
 
-static bool tune_parse(tune_options *o, int argc, const char **argv, poptContext *context) {
-    const struct poptOption options[] = {
-        {"max-ms", 0, POPT_ARG_DOUBLE, &o->max_ms, 0,
-         "find the best picture whose median frame takes no longer on the device", "MS"},
-        {"max-error", 0, POPT_ARG_DOUBLE, &o->max_error, 0,
-         "find the least time whose worst frame has no greater error", "E"},
-        {"error", 0, POPT_ARG_STRING, &o->error, 0,
-         "measure of error: flip (default), or psnr in dB, of which E is the minimum", "KIND"},
-        {"axes", 0, POPT_ARG_STRING, NULL, OPTION_AXES,
-         "controls to vary, or controls and their values from cheap to expensive "
-         "(default: the effect's steps, resolutions, octaves, ...)",
-         "NAME[=V:V...],..."},
-        {"reference", 0, POPT_ARG_STRING, NULL, OPTION_REFERENCE,
-         "compare with a path tracer with so many samples per pixel (default: the effect with all "
-         "axes at their best)",
-         "SPP"},
-        {"name", 0, POPT_ARG_STRING, &o->preset, 0, "name of the preset (default: tuned)", "NAME"},
-        {"output", 'o', POPT_ARG_STRING, &o->order.folder, 0,
-         "folder of the results and the report (default: out/tune/EFFECT)", "DIR"},
-        {"resume", 0, POPT_ARG_NONE, &o->resume, 0,
-         "keep what was measured in DIR, for this goal or another", NULL},
-        {"budget", 0, POPT_ARG_DOUBLE, &o->order.budget, 0,
-         "time limit of the search; the best result until then counts", "SECONDS"},
-        {"frames", 'f', POPT_ARG_STRING, &o->frames_text, 0,
-         "30, or 10,30,50, or 1-100:20 (default: three places spread over the effect)", "FRAMES"},
-        {"size", 's', POPT_ARG_STRING, NULL, OPTION_SIZE, "size of pictures (default: 960x540)",
-         "WxH"},
-        {"repeats", 0, POPT_ARG_INT, &o->repeats, 0, "how often each row is measured (default: 2)",
-         "N"},
-        {"limit", 0, POPT_ARG_DOUBLE, &o->order.limit, 0, "time limit of a row (default: 120)",
-         "SECONDS"},
-        {"set", 0, POPT_ARG_STRING, NULL, OPTION_SET, "applies to everything that is measured",
-         "NAME=VALUE"},
-        {"preset", 0, POPT_ARG_STRING, NULL, OPTION_PRESET,
-         "applies to everything that is measured", "NAME|FILE.lua"},
-        APP_DEVICE_ROW(&o->order.device),
-        APP_MEMORY_ROW(&o->memory),
-        POPT_AUTOHELP POPT_TABLEEND};
-    *context = app_options("roil tune", argc, argv, options,
-                           "EFFECT.lua --max-ms MS | --max-error E [options]");
-    int option;
-    while ((option = poptGetNextOpt(*context)) > 0)
-        if (!take_option(o, *context, option)) return false;
-    if (option < -1) return app_refuse_option(*context, options, option);
-    return take_effect(o, *context) && take_goal(o) && take_numbers(o);
+static bool tune_check(void *user, poptContext arguments) {
+    tune_options *o = user;
+    return take_effect(o, arguments) && take_goal(o) && take_numbers(o);
 }
 
 // ---- what is said -------------------------------------------------------------------------------
@@ -240,7 +186,8 @@ static void on_steps(void *user, double done, double whole) {
     app_tell_steps(&((tune_options *)user)->steps, done, whole);
 }
 
-static int tune_search(tune_options *o) {
+static int tune_search(void *user) {
+    tune_options *o = user;
     if (o->order.folder == o->folder && !app_may_write_here(o->folder)) return app_fail_input();
     roil *r = roil_create(&(roil_desc){.no_device = true, .memory = o->memory});
     if (!r || !app_collect_settings(&o->settings, r, o->order.effect, NULL)) {
@@ -265,13 +212,51 @@ int cmd_tune(int argc, const char **argv) {
     o.order.width = 960;
     o.order.height = 540;
     o.order.limit = 120;
-    poptContext context;
-    int status = tune_parse(&o, argc, argv, &context)
-                     ? tune_search(&o)
-                     : app_fail(APP_BAD_USAGE, "tune: %s", roil_error());
-    poptFreeContext(context);
-    app_free_settings(&o.settings);
-    app_free_frames(&o.frames);
+    const struct poptOption options[] = {
+        {"max-ms", 0, POPT_ARG_DOUBLE, &o.max_ms, 0,
+         "find the best picture whose median frame takes no longer on the device", "MS"},
+        {"max-error", 0, POPT_ARG_DOUBLE, &o.max_error, 0,
+         "find the least time whose worst frame has no greater error", "E"},
+        {"error", 0, POPT_ARG_STRING, &o.error, 0,
+         "measure of error: flip (default), or psnr in dB, of which E is the minimum", "KIND"},
+        {"axes", 0, POPT_ARG_STRING, NULL, OPTION_AXES,
+         "controls to vary, or controls and their values from cheap to expensive "
+         "(default: the effect's steps, resolutions, octaves, ...)",
+         "NAME[=V:V...],..."},
+        {"reference", 0, POPT_ARG_STRING, NULL, OPTION_REFERENCE,
+         "compare with a path tracer with so many samples per pixel (default: the effect with all "
+         "axes at their best)",
+         "SPP"},
+        {"name", 0, POPT_ARG_STRING, &o.preset, 0, "name of the preset (default: tuned)", "NAME"},
+        {"output", 'o', POPT_ARG_STRING, &o.order.folder, 0,
+         "folder of the results and the report (default: out/tune/EFFECT)", "DIR"},
+        {"resume", 0, POPT_ARG_NONE, &o.resume, 0,
+         "keep what was measured in DIR, for this goal or another", NULL},
+        {"budget", 0, POPT_ARG_DOUBLE, &o.order.budget, 0,
+         "time limit of the search; the best result until then counts", "SECONDS"},
+        {"frames", 'f', POPT_ARG_STRING, NULL, APP_FRAMES,
+         "30, or 10,30,50, or 1-100:20 (default: three places spread over the effect)", "FRAMES"},
+        {"size", 's', POPT_ARG_STRING, NULL, OPTION_SIZE, "size of pictures (default: 960x540)",
+         "WxH"},
+        {"repeats", 0, POPT_ARG_INT, &o.repeats, 0, "how often each row is measured (default: 2)",
+         "N"},
+        {"limit", 0, POPT_ARG_DOUBLE, &o.order.limit, 0, "time limit of a row (default: 120)",
+         "SECONDS"},
+        {"set", 0, POPT_ARG_STRING, NULL, APP_SET, "applies to everything that is measured",
+         "NAME=VALUE"},
+        {"preset", 0, POPT_ARG_STRING, NULL, APP_PRESET, "applies to everything that is measured",
+         "NAME|FILE.lua"},
+        APP_DEVICE_ROW(&o.order.device),
+        APP_MEMORY_ROW(&o.memory),
+        POPT_AUTOHELP POPT_TABLEEND};
+    int status = app_run(argc, argv, "roil tune",
+                         "EFFECT.lua --max-ms MS | --max-error E [options]", options,
+                         &(app_task){.job = &o,
+                                     .check = tune_check,
+                                     .run = tune_search,
+                                     .take = take_option,
+                                     .settings = &o.settings,
+                                     .frames = &o.frames});
     mem_free(o.axes);
     return status;
 }

@@ -36,8 +36,6 @@ typedef struct job {
     const char *made[17]; // options that make it again
 } job;
 
-enum { OPTION_SET = 1, OPTION_PRESET, OPTION_SAMPLES };
-
 // ---- options ----------------------------------------------------------------------------------
 
 static bool parse_grid(job *j) {
@@ -51,19 +49,17 @@ static bool parse_grid(job *j) {
            err_set("--grid '%s'; accepted: COLUMNSxROWS, as 8x8, up to 64x64", j->grid);
 }
 
-static bool take_option(job *j, poptContext context, int option) {
-    char *text = poptGetOptArg(context);
-    if (option == OPTION_SET) return app_add_set(&j->settings, text);
-    if (option == OPTION_SAMPLES) return app_parse_samples("--samples", text, &j->samples);
-    app_add_preset(&j->settings, text);
-    return true;
+static bool take_samples(void *user, int option, char *text) {
+    (void)option; // the only one
+    job *j = user;
+    return app_parse_samples("--samples", text, &j->samples);
 }
 
-static bool sheet_check_options(job *j, poptContext context) {
-    j->file = poptGetArg(context);
-    if (!j->file) return err_set("which effect? usage: roil export sheet EFFECT.lua -o fire.png");
-    const char *more = poptGetArg(context);
-    if (more) return err_set("'%s': one effect at a time", more);
+static bool sheet_check_options(void *user, poptContext arguments) {
+    job *j = user;
+    if (!app_take_effect(arguments, &j->file,
+                         "which effect? usage: roil export sheet EFFECT.lua -o fire.png"))
+        return false;
     if (!j->output) return err_set("-o is missing");
     if (strchr(j->output, '%'))
         return err_set("output '%s'; accepted: one file, as fire.png", j->output);
@@ -86,71 +82,6 @@ static bool sheet_check_options(job *j, poptContext context) {
     j->options.crop = j->crop;
     return parse_grid(j) && app_check_device(&j->device) &&
            (!j->frames_text || app_parse_frames(j->frames_text, &j->frames));
-}
-
-static bool sheet_parse(job *j, int argc, const char **argv, poptContext *context) {
-    const struct poptOption options[] = {
-        {"output", 'o', POPT_ARG_STRING, &j->output, 0,
-         "the colours; maps are beside them (fire-motion.png), and what is in them (fire.json)",
-         "FILE.png|.exr|.tga"},
-        {"grid", 'g', POPT_ARG_STRING, &j->grid, 0, "cells across and down (default: 8x8)",
-         "COLUMNSxROWS"},
-        {"cell", '\0', POPT_ARG_INT, &j->cell, 0, "pixels along each side of a cell (default: 256)",
-         "N"},
-        {"gutter", '\0', POPT_ARG_INT, &j->gutter, 0,
-         "pixels at the edges of a cell that stay empty, so that neighbours do not mix in mip "
-         "levels (default: "
-         "4, good for three levels)",
-         "N"},
-        {"frames", 'f', POPT_ARG_STRING, &j->frames_text, 0,
-         "30, or 1-100, or 1-100:2 (default: all, evenly spread over the cells)", "FRAMES"},
-        {"loop", '\0', POPT_ARG_DOUBLE, &j->loop, 0,
-         "let it repeat after so long: the last quarter dissolves into what was before the first "
-         "cell",
-         "SECONDS"},
-        {"maps", '\0', POPT_ARG_STRING, &j->desc.maps, 0,
-         "color, motion, six-way, normal, depth, temperature, separated by commas (default: color)",
-         "NAMES"},
-        {"for", '\0', POPT_ARG_STRING, &j->options.engine, 0,
-         "signs and encodings of an engine: unity, unreal, godot or labs", "ENGINE"},
-        {"light", '\0', POPT_ARG_STRING, &j->desc.light, 0,
-         "of the colours: shown, tone-mapped; scene, before that; or both (default: shown)",
-         "WORD"},
-        {"alpha", '\0', POPT_ARG_STRING, &j->options.alpha, 0,
-         "premultiplied, straight or both (default: premultiplied, or as the engine has it)",
-         "WORD"},
-        {"format", '\0', POPT_ARG_STRING, &j->options.format, 0,
-         "png, png16 (16 bits a channel), exr or tga (default: by the name)", "WORD"},
-        {"crop", '\0', POPT_ARG_NONE, &j->crop, 0, "cut the cells to what is used in any", NULL},
-        {"camera", '\0', POPT_ARG_NONE, &j->camera, 0,
-         "keep the effect's camera (default: orthographic, looking the same way, around all that "
-         "is "
-         "seen)",
-         NULL},
-        {"all", '\0', POPT_ARG_NONE, &j->all, 0,
-         "show all places where the medium may be, without a look at where it is, which takes up "
-         "to "
-         "16 small frames, and simulates twice",
-         NULL},
-        {"source", '\0', POPT_ARG_STRING, &j->desc.source, 0, "a pass march (default: the first)",
-         "NAME"},
-        {"samples", '\0', POPT_ARG_STRING, NULL, OPTION_SAMPLES, "as in roil render", "N"},
-        {"shutter", '\0', POPT_ARG_DOUBLE, &j->shutter, 0,
-         "as in roil render, in frames of the effect", "FRAMES"},
-        {"page", '\0', POPT_ARG_STRING, &j->options.page, 0,
-         "a page for a browser that plays the sheet, lights it and shows its maps", "FILE.html"},
-        {"set", '\0', POPT_ARG_STRING, NULL, OPTION_SET, "as in roil render", "NAME=VALUE"},
-        {"preset", '\0', POPT_ARG_STRING, NULL, OPTION_PRESET, "as in roil render",
-         "NAME|FILE.lua"},
-        app_device_rows(&j->device),
-        POPT_AUTOHELP POPT_TABLEEND};
-    *context =
-        app_options("roil export sheet", argc, argv, options, "EFFECT.lua -o fire.png [options]");
-    int option;
-    while ((option = poptGetNextOpt(*context)) > 0)
-        if (!take_option(j, *context, option)) return false;
-    if (option < -1) return app_refuse_option(*context, options, option);
-    return sheet_check_options(j, *context);
 }
 
 // Lists the options that say what is made, for the files to hold.
@@ -331,22 +262,82 @@ static bool export_all(void *user, roil_effect *e) {
     return done;
 }
 
+static int sheet_run(void *user) {
+    job *j = user;
+    return app_export_effect(&(app_export){.device = &j->device,
+                                           .settings = &j->settings,
+                                           .file = j->file,
+                                           .plan = plan,
+                                           .look = j->camera || j->all ? NULL : look,
+                                           .make = export_all,
+                                           .job = j});
+}
+
 int export_sheet(int argc, const char **argv) {
     job j = {.frames.step = 1, .cell = 256, .gutter = 4, .shutter = 0.5};
-    poptContext context;
-    int status = sheet_parse(&j, argc, argv, &context)
-                     ? app_export_effect(&(app_export){.device = &j.device,
-                                                       .settings = &j.settings,
-                                                       .file = j.file,
-                                                       .plan = plan,
-                                                       .look = j.camera || j.all ? NULL : look,
-                                                       .make = export_all,
-                                                       .job = &j})
-                     : app_fail(APP_BAD_USAGE, "export: %s", roil_error());
-    poptFreeContext(context);
+    const struct poptOption options[] = {
+        {"output", 'o', POPT_ARG_STRING, &j.output, 0,
+         "the colours; maps are beside them (fire-motion.png), and what is in them (fire.json)",
+         "FILE.png|.exr|.tga"},
+        {"grid", 'g', POPT_ARG_STRING, &j.grid, 0, "cells across and down (default: 8x8)",
+         "COLUMNSxROWS"},
+        {"cell", '\0', POPT_ARG_INT, &j.cell, 0, "pixels along each side of a cell (default: 256)",
+         "N"},
+        {"gutter", '\0', POPT_ARG_INT, &j.gutter, 0,
+         "pixels at the edges of a cell that stay empty, so that neighbours do not mix in mip "
+         "levels (default: "
+         "4, good for three levels)",
+         "N"},
+        {"frames", 'f', POPT_ARG_STRING, &j.frames_text, 0,
+         "30, or 1-100, or 1-100:2 (default: all, evenly spread over the cells)", "FRAMES"},
+        {"loop", '\0', POPT_ARG_DOUBLE, &j.loop, 0,
+         "let it repeat after so long: the last quarter dissolves into what was before the first "
+         "cell",
+         "SECONDS"},
+        {"maps", '\0', POPT_ARG_STRING, &j.desc.maps, 0,
+         "color, motion, six-way, normal, depth, temperature, separated by commas (default: color)",
+         "NAMES"},
+        {"for", '\0', POPT_ARG_STRING, &j.options.engine, 0,
+         "signs and encodings of an engine: unity, unreal, godot or labs", "ENGINE"},
+        {"light", '\0', POPT_ARG_STRING, &j.desc.light, 0,
+         "of the colours: shown, tone-mapped; scene, before that; or both (default: shown)",
+         "WORD"},
+        {"alpha", '\0', POPT_ARG_STRING, &j.options.alpha, 0,
+         "premultiplied, straight or both (default: premultiplied, or as the engine has it)",
+         "WORD"},
+        {"format", '\0', POPT_ARG_STRING, &j.options.format, 0,
+         "png, png16 (16 bits a channel), exr or tga (default: by the name)", "WORD"},
+        {"crop", '\0', POPT_ARG_NONE, &j.crop, 0, "cut the cells to what is used in any", NULL},
+        {"camera", '\0', POPT_ARG_NONE, &j.camera, 0,
+         "keep the effect's camera (default: orthographic, looking the same way, around all that "
+         "is "
+         "seen)",
+         NULL},
+        {"all", '\0', POPT_ARG_NONE, &j.all, 0,
+         "show all places where the medium may be, without a look at where it is, which takes up "
+         "to "
+         "16 small frames, and simulates twice",
+         NULL},
+        {"source", '\0', POPT_ARG_STRING, &j.desc.source, 0, "a pass march (default: the first)",
+         "NAME"},
+        {"samples", '\0', POPT_ARG_STRING, NULL, 1, "as in roil render", "N"},
+        {"shutter", '\0', POPT_ARG_DOUBLE, &j.shutter, 0,
+         "as in roil render, in frames of the effect", "FRAMES"},
+        {"page", '\0', POPT_ARG_STRING, &j.options.page, 0,
+         "a page for a browser that plays the sheet, lights it and shows its maps", "FILE.html"},
+        {"set", '\0', POPT_ARG_STRING, NULL, APP_SET, "as in roil render", "NAME=VALUE"},
+        {"preset", '\0', POPT_ARG_STRING, NULL, APP_PRESET, "as in roil render", "NAME|FILE.lua"},
+        app_device_rows(&j.device),
+        POPT_AUTOHELP POPT_TABLEEND};
+    int status =
+        app_run(argc, argv, "roil export sheet", "EFFECT.lua -o fire.png [options]", options,
+                &(app_task){.job = &j,
+                            .check = sheet_check_options,
+                            .run = sheet_run,
+                            .take = take_samples,
+                            .settings = &j.settings,
+                            .frames = &j.frames});
     mem_free(j.shots);
     arena_free(&j.memory);
-    app_free_frames(&j.frames);
-    app_free_settings(&j.settings);
     return status;
 }

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 
 typedef struct job {
-    const char *file, *output, *frames_text;
+    const char *file, *output;
     roil_volume_desc volume;
     app_settings settings;
     app_device device;
@@ -17,7 +17,7 @@ typedef struct job {
     double tolerance;
 } job;
 
-enum { OPTION_SIZE = 1, OPTION_BOX, OPTION_SET, OPTION_PRESET };
+enum { OPTION_SIZE = 1, OPTION_BOX };
 
 // ---- options ----------------------------------------------------------------------------------
 
@@ -39,66 +39,23 @@ static bool parse_box(const char *text, float out[2][3]) {
     return err_set("--box '%s'; accepted: X,Y,Z,X,Y,Z, the least and the greatest corner", text);
 }
 
-static bool take_option(job *j, poptContext context, int option) {
-    char *text = poptGetOptArg(context);
-    switch (option) {
-    case OPTION_SIZE:
-        return parse_size(text, &j->volume.size);
-    case OPTION_BOX:
-        return parse_box(text, j->volume.box);
-    case OPTION_SET:
-        return app_add_set(&j->settings, text);
-    case OPTION_PRESET:
-        app_add_preset(&j->settings, text);
-        return true;
-    }
-    return true;
+static bool take_option(void *user, int option, char *text) {
+    job *j = user;
+    return option == OPTION_SIZE ? parse_size(text, &j->volume.size)
+                                 : parse_box(text, j->volume.box);
 }
 
-static bool export_check_options(job *j, poptContext context) {
-    j->file = poptGetArg(context);
-    if (!j->file)
-        return err_set("which effect? usage: roil export vdb EFFECT.lua -o DIR/%%04d.vdb");
-    const char *more = poptGetArg(context);
-    if (more) return err_set("'%s': one effect at a time", more);
+static bool export_check_options(void *user, poptContext arguments) {
+    job *j = user;
+    if (!app_take_effect(arguments, &j->file,
+                         "which effect? usage: roil export vdb EFFECT.lua -o DIR/%04d.vdb"))
+        return false;
     if (!j->output) return err_set("-o is missing");
     if (!str_ends_with(j->output, ".vdb")) return err_set("output '%s'; accepted: .vdb", j->output);
     if (!(j->tolerance >= 0 && j->tolerance < 1e6))
         return err_set("--tolerance %g; accepted: 0 or more", j->tolerance);
     j->volume.tolerance = (float)j->tolerance;
-    return app_check_pattern(j->output) && app_check_device(&j->device) &&
-           (!j->frames_text || app_parse_frames(j->frames_text, &j->frames));
-}
-
-static bool export_parse(job *j, int argc, const char **argv, poptContext *context) {
-    const struct poptOption options[] = {
-        {"output", 'o', POPT_ARG_STRING, &j->output, 0, "file or pattern", "DIR/%04d.vdb"},
-        {"frames", 'f', POPT_ARG_STRING, &j->frames_text, 0,
-         "30, or 1-100, or 1-100:2 (default: all)", "FRAMES"},
-        {"source", '\0', POPT_ARG_STRING, &j->volume.source, 0,
-         "a grid by the name of its variable, or a pass whose medium it is (default: the grid that "
-         "is simulated, else the medium of the march)",
-         "NAME"},
-        {"fields", '\0', POPT_ARG_STRING, &j->volume.fields, 0,
-         "fields of the source, separated by commas (default: all)", "NAMES"},
-        {"size", '\0', POPT_ARG_STRING, NULL, OPTION_SIZE,
-         "voxels along the longest side (default: those of the source)", "N"},
-        {"box", '\0', POPT_ARG_STRING, NULL, OPTION_BOX,
-         "corners in metres (default: the box that is not empty in these frames)", "X,Y,Z,X,Y,Z"},
-        {"tolerance", '\0', POPT_ARG_DOUBLE, &j->tolerance, 0,
-         "values up to this are not stored (default: 0)", "VALUE"},
-        {"set", '\0', POPT_ARG_STRING, NULL, OPTION_SET, "as in roil render", "NAME=VALUE"},
-        {"preset", '\0', POPT_ARG_STRING, NULL, OPTION_PRESET, "as in roil render",
-         "NAME|FILE.lua"},
-        app_device_rows(&j->device),
-        POPT_AUTOHELP POPT_TABLEEND};
-    *context =
-        app_options("roil export vdb", argc, argv, options, "EFFECT.lua -o DIR/%04d.vdb [options]");
-    int option;
-    while ((option = poptGetNextOpt(*context)) > 0)
-        if (!take_option(j, *context, option)) return false;
-    if (option < -1) return app_refuse_option(*context, options, option);
-    return export_check_options(j, *context);
+    return app_check_pattern(j->output) && app_check_device(&j->device);
 }
 
 // ---- work -------------------------------------------------------------------------------------
@@ -158,19 +115,43 @@ static bool export_all(void *user, roil_effect *e) {
     return true;
 }
 
+static int export_run(void *user) {
+    job *j = user;
+    return app_export_effect(&(app_export){.device = &j->device,
+                                           .settings = &j->settings,
+                                           .file = j->file,
+                                           .plan = export_complete,
+                                           .make = export_all,
+                                           .job = j});
+}
+
 int export_vdb(int argc, const char **argv) {
     job j = {.frames.step = 1};
-    poptContext context;
-    int status = export_parse(&j, argc, argv, &context)
-                     ? app_export_effect(&(app_export){.device = &j.device,
-                                                       .settings = &j.settings,
-                                                       .file = j.file,
-                                                       .plan = export_complete,
-                                                       .make = export_all,
-                                                       .job = &j})
-                     : app_fail(APP_BAD_USAGE, "export: %s", roil_error());
-    poptFreeContext(context);
-    app_free_frames(&j.frames);
-    app_free_settings(&j.settings);
-    return status;
+    const struct poptOption options[] = {
+        {"output", 'o', POPT_ARG_STRING, &j.output, 0, "file or pattern", "DIR/%04d.vdb"},
+        {"frames", 'f', POPT_ARG_STRING, NULL, APP_FRAMES,
+         "30, or 1-100, or 1-100:2 (default: all)", "FRAMES"},
+        {"source", '\0', POPT_ARG_STRING, &j.volume.source, 0,
+         "a grid by the name of its variable, or a pass whose medium it is (default: the grid that "
+         "is simulated, else the medium of the march)",
+         "NAME"},
+        {"fields", '\0', POPT_ARG_STRING, &j.volume.fields, 0,
+         "fields of the source, separated by commas (default: all)", "NAMES"},
+        {"size", '\0', POPT_ARG_STRING, NULL, OPTION_SIZE,
+         "voxels along the longest side (default: those of the source)", "N"},
+        {"box", '\0', POPT_ARG_STRING, NULL, OPTION_BOX,
+         "corners in metres (default: the box that is not empty in these frames)", "X,Y,Z,X,Y,Z"},
+        {"tolerance", '\0', POPT_ARG_DOUBLE, &j.tolerance, 0,
+         "values up to this are not stored (default: 0)", "VALUE"},
+        {"set", '\0', POPT_ARG_STRING, NULL, APP_SET, "as in roil render", "NAME=VALUE"},
+        {"preset", '\0', POPT_ARG_STRING, NULL, APP_PRESET, "as in roil render", "NAME|FILE.lua"},
+        app_device_rows(&j.device),
+        POPT_AUTOHELP POPT_TABLEEND};
+    return app_run(argc, argv, "roil export vdb", "EFFECT.lua -o DIR/%04d.vdb [options]", options,
+                   &(app_task){.job = &j,
+                               .check = export_check_options,
+                               .run = export_run,
+                               .take = take_option,
+                               .settings = &j.settings,
+                               .frames = &j.frames});
 }

@@ -31,7 +31,7 @@ static void list_options(option_names *list, const struct poptOption *options) {
     }
 }
 
-bool app_refuse_option(struct poptContext_s *context, const struct poptOption *options, int code) {
+static bool refuse_option(poptContext context, const struct poptOption *options, int code) {
     const char *given = poptBadOption(context, 0);
     if (code != POPT_ERROR_BADOPT) return err_set("%s: %s", given, poptStrerror(code));
     option_names known = {0};
@@ -47,6 +47,50 @@ bool app_refuse_option(struct poptContext_s *context, const struct poptOption *o
     err_set("unknown option '%s'; accepted: %s", given, strbuf_text(&text));
     strbuf_free(&text);
     return false;
+}
+
+static bool take_option(const app_task *t, int option, char *text) {
+    switch (option) {
+    case APP_SET:
+        return app_add_set(t->settings, text);
+    case APP_PRESET:
+        app_add_preset(t->settings, text);
+        return true;
+    case APP_EVENT:
+        app_add_event(t->settings, text);
+        return true;
+    case APP_FRAMES:
+        app_free_frames(t->frames); // of one before
+        return app_parse_frames(text, t->frames);
+    }
+    return t->take(t->job, option, text);
+}
+
+static bool take_all(const app_task *t, poptContext context, const struct poptOption *options) {
+    int option;
+    while ((option = poptGetNextOpt(context)) > 0)
+        if (!take_option(t, option, poptGetOptArg(context))) return false;
+    return option < -1 ? refuse_option(context, options, option) : t->check(t->job, context);
+}
+
+int app_run(int argc, const char **argv, const char *name, const char *usage,
+            const struct poptOption *options, const app_task *t) {
+    const char *word = strchr(name, ' ') + 1; // "export" of "roil export vdb"
+    poptContext context = app_options(name, argc, argv, options, usage);
+    int status = take_all(t, context, options) ? t->run(t->job)
+                                               : app_fail(APP_BAD_USAGE, "%.*s: %s",
+                                                          (int)strcspn(word, " "), word, err_get());
+    poptFreeContext(context);
+    if (t->settings) app_free_settings(t->settings);
+    if (t->frames) app_free_frames(t->frames);
+    return status;
+}
+
+bool app_take_effect(poptContext arguments, const char **file, const char *missing) {
+    *file = poptGetArg(arguments);
+    if (!*file) return err_set("%s", missing);
+    const char *more = poptGetArg(arguments);
+    return !more || err_set("'%s': one effect at a time", more);
 }
 
 // ---- frames and sizes -------------------------------------------------------------------------
