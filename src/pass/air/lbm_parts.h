@@ -28,25 +28,10 @@ float lbm_air_spoilt_speed(const lbm_air *a); // faster air is stopped, and not 
 
 // lbm.c
 bool lbm_air_check_options(const pass *p);
+double lbm_air_pascals(const lbm_air *a); // of an excess of density of 1
 
 // lbm_step.c
 extern const air_kind lbm_kind;
-
-// lbm_build.c
-bool lbm_air_build(pass *p);
-bool lbm_air_allocate(pass *p);
-void lbm_air_list_memory(const pass *p, budget_list *out);
-void lbm_air_destroy(pass *p);
-
-// lbm_frame.c
-bool lbm_air_update(pass *p);
-bool lbm_air_rehearse(pass *p);
-bool lbm_air_record(pass *p);
-double lbm_air_pascals(const lbm_air *a); // of an excess of density of 1
-
-// lbm_state.c
-void lbm_air_save(const pass *p, struct checkpoint_list *out);
-bool lbm_air_load(pass *p, struct checkpoint *from);
 
 // lbm_readouts.c
 extern const pass_simulation lbm_simulation;

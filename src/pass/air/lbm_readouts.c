@@ -1,6 +1,9 @@
-// What simulated air tells of itself, and the guard: what the device noticed some frames ago.
+// What simulated air tells of itself, and the guard: what the device noticed some frames ago. Its
+// state in a checkpoint, and what its time and place must be.
 #include "base/memory.h"
+#include "base/str.h"
 #include "pass/air/lbm_parts.h"
+#include "sim/lbm_state.h"
 #include <math.h>
 
 // Of the air's mass, either way: more is not air that was blown or drawn, but a solver that fails.
@@ -158,6 +161,29 @@ static size_t lbm_air_readouts(const pass *p, pass_readout *out, size_t capacity
     };
     for (size_t i = 0; i < COUNT_OF(all) && i < capacity; i++) out[i] = all[i];
     return COUNT_OF(all);
+}
+
+// ---- in a checkpoint --------------------------------------------------------------------------
+
+static void lbm_air_save(const pass *p, checkpoint_list *out) {
+    const lbm_air *a = lbm_air_of(p);
+    strbuf more = {0};
+    air_describe(&a->air, &more);
+    lbm_state_list(a->solver, p->label, strbuf_text(&more), out);
+    air_save_templates(&a->air, out);
+    strbuf_free(&more);
+}
+
+static bool lbm_air_load(pass *p, checkpoint *from) {
+    lbm_air *a = lbm_air_of(p);
+    strbuf more = {0};
+    air_describe(&a->air, &more);
+    air_restart(p);
+    a->air.fresh =
+        !lbm_state_load(a->solver, p->host->device, p->label, strbuf_text(&more), from) ||
+        !air_load_templates(&a->air, from);
+    strbuf_free(&more);
+    return !a->air.fresh;
 }
 
 const pass_simulation lbm_simulation = {
