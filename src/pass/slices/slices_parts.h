@@ -67,31 +67,12 @@ bool slices_is_template(const pass *part);
 bool slices_run_parts(slices_flow *f, bool obstacles); // those alone, or the others
 void slices_forget_part(pass *part);                   // what it wrote is gone
 
-// slices_state.c
-struct checkpoint;
-struct checkpoint_list;
-void slices_save(const pass *p, struct checkpoint_list *out);
-bool slices_load(pass *p, struct checkpoint *from);
-
-// slices_build.c
-bool slices_build(pass *p);
-bool slices_allocate(pass *p);
-void slices_list_memory(const pass *p, budget_list *out);
-void slices_destroy(pass *p);
-
-// slices_frame.c
-bool slices_update(pass *p);
-bool slices_rehearse(pass *p);
-bool slices_record(pass *p);
-
 // slices_readouts.c
 extern const pass_simulation slices_simulation;
 
-// slices_numbers.c
+// slices_time.c
 uint32_t slices_seed(const slices_flow *f); // of all that is random, as of the host's time
 bool slices_numbers(const pass *p, flow_numbers *out); // as of the host's context
-
-// slices_time.c
 int64_t slices_left(const pass *p, double time);
 int64_t slices_most(const pass *p);
 double slices_reached(const pass *p);

@@ -1,6 +1,11 @@
-// What slices tell of themselves: what the device noticed some frames ago.
+// What slices tell of themselves: what the device noticed some frames ago, and, to a checkpoint,
+// their whole state.
+#include "base/error.h"
+#include "base/log.h"
 #include "base/memory.h"
-#include "pass/slices/slices_parts.h"
+#include "base/str.h"
+#include "pass/slices/slices_templates_parts.h"
+#include "sim/state.h"
 
 // Cells that the flow may cross in a step before it is told of: beyond it, what is carried is
 // guessed rather than followed.
@@ -71,6 +76,58 @@ static const char *trouble(const pass *p) {
     slices_flow *f = slices_of(p);
     look(p);
     return f->trouble[0] ? f->trouble : NULL;
+}
+
+// ---- in a checkpoint --------------------------------------------------------------------------
+
+// The state of the solver and of the templates, and what the time and height must be.
+static void describe(const slices_flow *f, strbuf *out) {
+    strbuf_add(out, "height = %.9g\n", f->desc.height);
+    strbuf_add(out, "time_step = %.9g\n", f->clock.step);
+    strbuf_add(out, "warm_up = %.9g\n", f->clock.warm_up);
+}
+
+static bool templates_part(const pass *p, arena *memory, checkpoint_part *out) {
+    gpu_buffer *buffer = slices_templates_buffer(p);
+    if (!buffer) return false;
+    *out = (checkpoint_part){.name = arena_format(memory, "%s/templates", p->label),
+                             .size = gpu_buffer_size(buffer),
+                             .width = 4,
+                             .buffer = buffer};
+    return true;
+}
+
+static void slices_save(const pass *p, checkpoint_list *out) {
+    const slices_flow *f = slices_of(p);
+    strbuf more = {0};
+    checkpoint_part templates;
+    describe(f, &more);
+    // What could not be read is missed when it is loaded.
+    if (!sim_state_list(&flow_state_kind, f->solver, p->host->device, p->label, strbuf_text(&more),
+                        out))
+        log_write(LOG_WARNING, "%s: %s", p->label, err_get());
+    if (templates_part(p, &out->memory, &templates)) checkpoint_add(out, &templates);
+    strbuf_free(&more);
+}
+
+static bool slices_load(pass *p, checkpoint *from) {
+    slices_flow *f = slices_of(p);
+    gpu *device = p->host->device;
+    strbuf more = {0};
+    arena memory = {0};
+    checkpoint_part templates;
+    describe(f, &more);
+    slices_restart(p);
+    bool done =
+        sim_state_load(&flow_state_kind, f->solver, device, p->label, strbuf_text(&more), from);
+    if (done && templates_part(p, &memory, &templates)) {
+        done = checkpoint_load(from, device, &templates);
+        if (done) f->templates->set.fresh = false;
+    }
+    f->fresh = !done;
+    strbuf_free(&more);
+    arena_free(&memory);
+    return done;
 }
 
 const pass_simulation slices_simulation = {
