@@ -26,5 +26,5 @@ typedef struct mesh_blob_texture {
 enum { MESH_VERTICES_MAX = 8 << 20, MESH_INDICES_MAX = 64 << 20, MESH_TEXTURES_MAX = 256 };
 
 // Runs in a worker. The input is the name that assimp uses for the file: "./" and its path below
-// the root (mesh_files.h). The file itself is asked for like those that it names.
+// the root (mesh.c). The file itself is asked for like those that it names.
 bool mesh_import(const isolate_call *call);
