@@ -57,44 +57,19 @@ static bool uniform_args(const field *node, const field_context *context, float 
     return true;
 }
 
-box3 bounds_sphere(const field *node, const field_context *context, const box3 *args) {
-    (void)args;
-    float a[3][4];
-    if (!uniform_args(node, context, a)) return box3_infinite();
-    return around(a[0], a[1][0], a[1][0], a[1][0]);
-}
-
-box3 bounds_box(const field *node, const field_context *context, const box3 *args) {
-    (void)args;
-    float a[3][4];
-    if (!uniform_args(node, context, a)) return box3_infinite();
-    return around(a[0], 0.5f * a[1][0], 0.5f * a[1][1], 0.5f * a[1][2]);
-}
-
-box3 bounds_capsule(const field *node, const field_context *context, const box3 *args) {
-    (void)args;
-    float a[3][4];
-    if (!uniform_args(node, context, a)) return box3_infinite();
-    float r = a[2][0];
-    return (box3){
-        {fminf(a[0][0], a[1][0]) - r, fminf(a[0][1], a[1][1]) - r, fminf(a[0][2], a[1][2]) - r},
-        {fmaxf(a[0][0], a[1][0]) + r, fmaxf(a[0][1], a[1][1]) + r, fmaxf(a[0][2], a[1][2]) + r}};
-}
-
-box3 bounds_torus(const field *node, const field_context *context, const box3 *args) {
-    (void)args;
-    float a[3][4];
-    if (!uniform_args(node, context, a)) return box3_infinite();
-    float out = a[1][0] + a[2][0];
-    return around(a[0], out, out, a[2][0]);
-}
-
-box3 bounds_disc(const field *node, const field_context *context, const box3 *args) {
-    (void)args;
-    float a[3][4];
-    box3 box = box3_infinite();
-    if (!uniform_args(node, context, a)) return box;
-    box.min.x = a[0][0] - a[2][0], box.max.x = a[0][0] + a[2][0];
-    box.min.y = a[1][0] - a[2][0], box.max.y = a[1][0] + a[2][0];
-    return box;
-}
+// The box of a shape, as an expression of the values `a` of its arguments.
+#define BOUNDS(shape, value)                                                                       \
+    box3 bounds_##shape(const field *node, const field_context *context, const box3 *args) {       \
+        (void)args;                                                                                \
+        float a[3][4];                                                                             \
+        return uniform_args(node, context, a) ? (value) : box3_infinite();                         \
+    }
+BOUNDS(sphere, around(a[0], a[1][0], a[1][0], a[1][0]))
+BOUNDS(box, around(a[0], 0.5f * a[1][0], 0.5f * a[1][1], 0.5f * a[1][2]))
+BOUNDS(capsule, ((box3){{fminf(a[0][0], a[1][0]) - a[2][0], fminf(a[0][1], a[1][1]) - a[2][0],
+                         fminf(a[0][2], a[1][2]) - a[2][0]},
+                        {fmaxf(a[0][0], a[1][0]) + a[2][0], fmaxf(a[0][1], a[1][1]) + a[2][0],
+                         fmaxf(a[0][2], a[1][2]) + a[2][0]}}))
+BOUNDS(torus, around(a[0], a[1][0] + a[2][0], a[1][0] + a[2][0], a[2][0]))
+BOUNDS(disc, ((box3){{a[0][0] - a[2][0], a[1][0] - a[2][0], box3_infinite().min.z},
+                     {a[0][0] + a[2][0], a[1][0] + a[2][0], box3_infinite().max.z}}))
