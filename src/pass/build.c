@@ -77,13 +77,11 @@ bool pass_describe_stage(pass *p, const char *shader, shader_stage stage,
                          const pass_defines *defines, shader_compile_desc *out) {
     arena *memory = p->host->memory;
     pass_defines *all = arena_alloc(memory, sizeof *all);
-    size_t count;
-    const pass_provider *const *rows = pass_providers(&count);
     if (defines) *all = *defines;
     define_interface(p, all);
-    for (size_t i = 0; i < count; i++) {
+    for (size_t i = 0; i < PASS_PROVIDERS; i++) {
         shader_define own[PASS_PROVIDER_DEFINES];
-        const size_t added = rows[i]->defines ? rows[i]->defines(p, own) : 0;
+        const size_t added = pass_providers[i]->defines ? pass_providers[i]->defines(p, own) : 0;
         for (size_t k = 0; k < added; k++) pass_define(all, own[k].name, own[k].value);
     }
     if (all->count == COUNT_OF(all->items))
@@ -219,15 +217,13 @@ bool pass_build_part(pass *p) {
 }
 
 void pass_list_memory(const pass *p, budget_list *out) {
-    size_t count;
-    const pass_provider *const *rows = pass_providers(&count);
     pass_buffer buffers[PASS_BUFFERS];
     const size_t buffer_count = list_buffers(p, buffers);
     for (const pass_buffer *b = buffers; b < buffers + buffer_count; b++)
         if (!*b->at) budget_list_add(out, b->label, b->size);
     if (p->type && p->type->list_memory) p->type->list_memory(p, out);
-    for (size_t i = 0; i < count; i++)
-        if (rows[i]->list_memory) rows[i]->list_memory(p, out);
+    for (size_t i = 0; i < PASS_PROVIDERS; i++)
+        if (pass_providers[i]->list_memory) pass_providers[i]->list_memory(p, out);
     pass_ranges_list_memory(p, out);
 }
 
@@ -252,10 +248,8 @@ void pass_destroy(pass *p) {
     for (size_t i = 0; i < p->face->image_count; i++)
         if (p->unread[i]) gpu_image_destroy(device, p->unread[i]);
     if (p->counters) gpu_buffer_destroy(device, p->counters);
-    size_t count;
-    const pass_provider *const *rows = pass_providers(&count);
-    for (size_t i = 0; i < count; i++)
-        if (rows[i]->destroy) rows[i]->destroy(p);
+    for (size_t i = 0; i < PASS_PROVIDERS; i++)
+        if (pass_providers[i]->destroy) pass_providers[i]->destroy(p);
     pass_destroy_kernels(p);
     mem_free(p->meshes);
     mem_free(p->instances);

@@ -217,10 +217,8 @@ bool pass_declare(pass *p) {
         if (face->fields[i].required && !p->fields[i])
             return err_set("%s: field '%s' is missing (%s)", p->label, face->fields[i].name,
                            face->fields[i].help);
-    size_t count;
-    const pass_provider *const *rows = pass_providers(&count);
-    for (size_t i = 0; i < count; i++)
-        if (rows[i]->find && !rows[i]->find(p)) return false;
+    for (size_t i = 0; i < PASS_PROVIDERS; i++)
+        if (pass_providers[i]->find && !pass_providers[i]->find(p)) return false;
     if (p->type && p->type->declare) return p->type->declare(p);
     if (p->type && p->type->runs_inside) return true;
     return pass_declare_images(p) && pass_add_to_graph(p);

@@ -28,8 +28,6 @@ typedef struct slot_source {
 enum { COMMON_BOX_MIN, COMMON_BOX_MAX, COMMON_NAMES };
 static const char *const common_names[COMMON_NAMES] = {"box_min", "box_max"};
 
-enum { MAX_PROVIDERS = 8 };
-
 typedef struct value_copy { // of a uniform of the interface that the kernel has
     const kernel_place *to;
     uint16_t uniform;
@@ -41,7 +39,7 @@ typedef struct pass_built {
     value_copy *copies;
     size_t copy_count;
     const kernel_place *common, *solver;
-    const kernel_place *provided[MAX_PROVIDERS]; // NULL: nothing of that row's is in it
+    const kernel_place *provided[PASS_PROVIDERS]; // NULL: nothing of that row's is in it
     slot_source sources[GPU_MAX_SLOTS];
 } pass_built;
 
@@ -60,10 +58,10 @@ typedef struct kernel_row {
 
 // The kernels of providers up to one that is not used, or NULL.
 static size_t count_provided(const pass *p, const pass_provider *until) {
-    size_t count, found = 0;
-    const pass_provider *const *rows = pass_providers(&count);
-    for (size_t i = 0; i < count && rows[i] != until; i++)
-        if (rows[i]->uses && rows[i]->uses(p)) found += rows[i]->kernel_count;
+    size_t found = 0;
+    for (size_t i = 0; i < PASS_PROVIDERS && pass_providers[i] != until; i++)
+        if (pass_providers[i]->uses && pass_providers[i]->uses(p))
+            found += pass_providers[i]->kernel_count;
     return found;
 }
 
@@ -72,16 +70,15 @@ static size_t count_kernels(const pass *p) {
 }
 
 static kernel_row find_row(const pass *p, size_t index) {
-    size_t count, left = index - count_own(p);
-    const pass_provider *const *rows = pass_providers(&count);
+    size_t left = index - count_own(p);
     if (index < count_own(p))
         return (kernel_row){p->type && p->type->kernels ? &p->type->kernels[index] : &own_shader,
                             NULL, index};
-    for (size_t i = 0; i < count; i++) {
-        if (!rows[i]->uses || !rows[i]->uses(p)) continue;
-        if (left < rows[i]->kernel_count)
-            return (kernel_row){&rows[i]->kernels[left], rows[i], left};
-        left -= rows[i]->kernel_count;
+    for (size_t i = 0; i < PASS_PROVIDERS; i++) {
+        const pass_provider *row = pass_providers[i];
+        if (!row->uses || !row->uses(p)) continue;
+        if (left < row->kernel_count) return (kernel_row){&row->kernels[left], row, left};
+        left -= row->kernel_count;
     }
     return (kernel_row){&own_shader, NULL, 0};
 }
@@ -125,10 +122,9 @@ static int find_glsl_image(const pass *p, const char *name) {
 }
 
 static bool find_provided(const char *name, slot_source *out) {
-    size_t count;
-    const pass_provider *const *rows = pass_providers(&count);
-    for (size_t i = 0; i < count; i++) {
-        const int slot = words_find(rows[i]->slots.items, rows[i]->slots.count, name);
+    for (size_t i = 0; i < PASS_PROVIDERS; i++) {
+        const kernel_names slots = pass_providers[i]->slots;
+        const int slot = words_find(slots.items, slots.count, name);
         if (slot < 0) continue;
         *out = (slot_source){FROM_PROVIDER, (int16_t)slot, (int16_t)i};
         return true;
@@ -198,11 +194,10 @@ static void find_places(pass *p, pass_built *b) {
     b->common = kernel_find(&b->base, memory, (kernel_names){common_names, COMMON_NAMES});
     b->solver = kernel_find(&b->base, memory, solver_names(p));
     mem_free(names);
-    size_t count;
-    const pass_provider *const *rows = pass_providers(&count);
-    for (size_t i = 0; i < count; i++) {
-        const kernel_place *places = kernel_find(&b->base, memory, rows[i]->uniforms);
-        b->provided[i] = has_any(places, rows[i]->uniforms.count) ? places : NULL;
+    for (size_t i = 0; i < PASS_PROVIDERS; i++) {
+        const kernel_names uniforms = pass_providers[i]->uniforms;
+        const kernel_place *places = kernel_find(&b->base, memory, uniforms);
+        b->provided[i] = has_any(places, uniforms.count) ? places : NULL;
     }
 }
 
@@ -375,14 +370,12 @@ static void copy_provided(pass *p, const pass_provider *row, size_t index) {
 }
 
 void pass_copy_values(pass *p) {
-    size_t count;
-    const pass_provider *const *rows = pass_providers(&count);
     for (size_t i = 0; i < p->built_count; i++) {
         pass_built *b = &p->built[i];
         for (size_t c = 0; c < b->copy_count; c++)
             copy_value(&b->base, &b->copies[c], p->values[b->copies[c].uniform]);
     }
-    for (size_t r = 0; r < count; r++) copy_provided(p, rows[r], r);
+    for (size_t r = 0; r < PASS_PROVIDERS; r++) copy_provided(p, pass_providers[r], r);
 }
 
 void pass_set(pass *p, int name, const void *data, size_t size) {
@@ -415,7 +408,6 @@ static void uniform_of(gpu_binding *out, const void *data, size_t size) {
 }
 
 static bool bind(pass *p, slot_source from, gpu_binding *out) {
-    size_t count;
     const pass_provider *provider;
     switch (from.kind) {
     case FROM_FRAME:
@@ -432,7 +424,7 @@ static bool bind(pass *p, slot_source from, gpu_binding *out) {
     case FROM_IMAGE:
         return pass_bind_image(p, (size_t)from.index, out);
     case FROM_PROVIDER:
-        provider = pass_providers(&count)[from.row];
+        provider = pass_providers[from.row];
         return provider->bind(p, from.index, out) ||
                err_set("%s: there is nothing to bind to '%s'", p->label,
                        provider->slots.items[from.index]);

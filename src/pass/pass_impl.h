@@ -130,7 +130,7 @@ gpu_image *pass_get_image(const pass *p, int name); // on the device, in a frame
 
 // What shaders may ask for by including a file of lib/: one row for each, in providers.c. A kernel
 // that has a slot or uniform of a row's names is given it.
-enum { PASS_PROVIDER_DEFINES = 4, PASS_PROVIDER_VALUES = 8 };
+enum { PASS_PROVIDERS = 8, PASS_PROVIDER_DEFINES = 4, PASS_PROVIDER_VALUES = 8 };
 struct pass_provider {
     kernel_names slots, uniforms;
     bool (*find)(pass *p); // when the pass is declared; may be NULL, as all of these
@@ -152,7 +152,7 @@ struct pass_provider {
     uint32_t (*count)(const pass *p); // of what there is of it in this frame, for threads
     void (*destroy)(pass *p);
 };
-const pass_provider *const *pass_providers(size_t *count);
+extern const pass_provider *const pass_providers[PASS_PROVIDERS];
 extern const pass_provider pass_particles_provider, pass_point_lights_provider,
     pass_shadow_maps_provider;
 

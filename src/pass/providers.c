@@ -80,15 +80,11 @@ static const pass_provider drawn = {.defines = define_drawn};
 
 // ---- all --------------------------------------------------------------------------------------
 
-const pass_provider *const *pass_providers(size_t *count) {
-    static const pass_provider *const rows[] = {&pass_particles_provider,
-                                                &pass_point_lights_provider,
-                                                &pass_shadow_maps_provider,
-                                                &counters,
-                                                &rays,
-                                                &blue_noise,
-                                                &sky,
-                                                &drawn};
-    *count = COUNT_OF(rows);
-    return rows;
-}
+const pass_provider *const pass_providers[PASS_PROVIDERS] = {&pass_particles_provider,
+                                                             &pass_point_lights_provider,
+                                                             &pass_shadow_maps_provider,
+                                                             &counters,
+                                                             &rays,
+                                                             &blue_noise,
+                                                             &sky,
+                                                             &drawn};

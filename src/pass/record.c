@@ -89,10 +89,8 @@ static bool fill_numbers(pass *p) {
 }
 
 static bool prepare_providers(pass *p) {
-    size_t count;
-    const pass_provider *const *rows = pass_providers(&count);
-    for (size_t i = 0; i < count; i++)
-        if (rows[i]->prepare && !rows[i]->prepare(p)) return false;
+    for (size_t i = 0; i < PASS_PROVIDERS; i++)
+        if (pass_providers[i]->prepare && !pass_providers[i]->prepare(p)) return false;
     return true;
 }
 
