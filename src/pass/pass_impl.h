@@ -80,6 +80,10 @@ void pass_define(pass_defines *out, const char *name, const char *value);
 void pass_define_number(pass *p, pass_defines *out, const char *name, uint32_t value);
 void pass_define_flag(pass_defines *out, const char *name, bool value); // 1 or 0
 
+// The kernels of a type or a provider: its table `kernels`, and KERNEL_NAMES.
+#define PASS_KERNELS                                                                               \
+    .kernels = kernels, .kernel_count = COUNT_OF(kernels), .names = {names, COUNT_OF(names)}
+
 // Returns kernel `index` of the type's list and binds all that the pass itself knows: blocks,
 // textures of fields, images, and what providers have. The type binds the rest by the numbers of
 // its names. All numbers are 0 before pass_prepare. NULL with a message.

@@ -23,8 +23,6 @@ const pass_type host_depth_type = {
     .name = "host_depth",
     .constructed = true,
     .shader = "pass/host/host_depth.comp",
-    .kernels = kernels,
-    .kernel_count = COUNT_OF(kernels),
-    .names = {names, COUNT_OF(names)},
+    PASS_KERNELS,
     .record = host_depth_record,
 };

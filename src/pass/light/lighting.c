@@ -390,9 +390,7 @@ static bool record_glow(pass *p) {
 const pass_type lighting_type = {
     .name = "lighting",
     .shader = "pass/light/lighting.comp",
-    .kernels = kernels,
-    .kernel_count = STAGES,
-    .names = {names, COUNT_OF(names)},
+    PASS_KERNELS,
     .declare = lighting_declare,
     .defines = lighting_defines,
     .update = lighting_update,

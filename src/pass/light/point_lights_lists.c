@@ -38,7 +38,7 @@ typedef enum lists_buffer {
 #define POINT_LIGHTS_NAMES(NAME)                                                                   \
     NAME(width), NAME(height), NAME(point_light_count), NAME(point_light_words),                   \
         NAME(point_light_tiles_across), NAME(point_light_picture)
-enum { POINT_LIGHTS_NAMES(KERNEL_NAME_ID) };
+KERNEL_NAMES(POINT_LIGHTS_NAMES);
 
 struct pass_point_lights {
     uint32_t count;
@@ -59,7 +59,6 @@ static const pass_kernel kernels[POINT_LIGHTS_KERNELS] = {
                            .vertex = "pass/light/point_lights_volume.vert",
                            .without_fields = true},
 };
-static const char *const names[] = {POINT_LIGHTS_NAMES(KERNEL_NAME_TEXT)};
 static const char *const labels[POINT_LIGHT_BUFFERS] = {
     [POINT_LIGHT_RECORDS] = "records of point lights",
     [POINT_LIGHT_MASKS] = "point lights by tiles",
@@ -272,9 +271,7 @@ const pass_provider pass_point_lights_provider = {
     .slots = {slots, POINT_LIGHT_SLOTS},
     .find = find_point_lights,
     .defines = point_lights_defines,
-    .kernels = kernels,
-    .kernel_count = POINT_LIGHTS_KERNELS,
-    .names = {names, COUNT_OF(names)},
+    PASS_KERNELS,
     .uses = uses_point_lights,
     .wants = wants_kernel,
     .target = point_lights_target,

@@ -156,8 +156,7 @@ static bool march_record(pass *p) {
 
 #define MARCH_TYPE(NAME)                                                                           \
     {                                                                                              \
-        .name = NAME, .shader = "pass/march/" NAME ".comp", .kernels = kernels,                    \
-        .kernel_count = MARCH_KERNELS, .names = {names, COUNT_OF(names)},                          \
+        .name = NAME, .shader = "pass/march/" NAME ".comp", PASS_KERNELS,                          \
         .declare = march_declare, .defines = march_defines, .update = march_update,                \
         .record = march_record,                                                                    \
     }

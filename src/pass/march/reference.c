@@ -149,9 +149,7 @@ static bool reference_record(pass *p) {
 const pass_type reference_type = {
     .name = "reference",
     .shader = "pass/march/reference.comp",
-    .kernels = kernels,
-    .kernel_count = REFERENCE_KERNELS,
-    .names = {names, COUNT_OF(names)},
+    PASS_KERNELS,
     .declare = reference_declare,
     .defines = reference_defines,
     .update = reference_update,

@@ -237,9 +237,7 @@ static bool pieces_record(pass *p) {
 const pass_type pieces_type = {
     .name = "pieces",
     .shader = "pass/particles/pieces.comp",
-    .kernels = kernels,
-    .kernel_count = STAGES,
-    .names = {names, COUNT_OF(names)},
+    PASS_KERNELS,
     .meshes = PASS_USES_MESHES,
     .declare = pieces_declare,
     .defines = pieces_defines,

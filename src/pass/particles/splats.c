@@ -45,7 +45,7 @@ typedef enum splats_stage {
         NAME(SortFrom), NAME(blend), NAME(lit), NAME(entries), NAME(lights), NAME(shadow),         \
         NAME(glow), NAME(image), NAME(picture), NAME(tiles_across), NAME(tiles_down),              \
         NAME(records_most), NAME(entries_most), NAME(group_count), NAME(depth_bits), NAME(shift)
-enum { SPLATS_NAMES(KERNEL_NAME_ID) };
+KERNEL_NAMES(SPLATS_NAMES);
 
 typedef enum splats_buffer {
     SPLATS_RECORDS,
@@ -74,7 +74,6 @@ static inline splats_state *splats_of(const pass *p) {
     return p->state;
 }
 
-static const char *const names[] = {SPLATS_NAMES(KERNEL_NAME_TEXT)};
 static const char sort_shader[] = "pass/particles/splats/sort.comp";
 static const pass_kernel kernels[SPLATS_STAGES] = {
     [SPLATS_PROJECT] = {.define = "STAGE_PROJECT"},
@@ -329,9 +328,7 @@ static bool splats_record(pass *p) {
 const pass_type splats_type = {
     .name = "splats",
     .shader = "pass/particles/splats.comp",
-    .kernels = kernels,
-    .kernel_count = SPLATS_STAGES,
-    .names = {names, COUNT_OF(names)},
+    PASS_KERNELS,
     .declare = splats_declare,
     .defines = splats_defines,
     .list_memory = splats_list_memory,

@@ -24,7 +24,8 @@ typedef enum bloom_stage {
     NAME(mode), NAME(source), NAME(picture), NAME(color), NAME(levels), NAME(passes), NAME(width), \
         NAME(height), NAME(tail_levels), NAME(radius), NAME(alpha), NAME(down), NAME(threshold),   \
         NAME(knee), NAME(limit), NAME(intensity)
-enum { BLOOM_NAMES(KERNEL_NAME_ID), BLOOM_NAME_COUNT, BLOOM_TAKEN = 4 };
+KERNEL_NAMES(BLOOM_NAMES);
+enum { BLOOM_TAKEN = 4 };
 
 typedef struct bloom_state {
     pass *bright; // whose work is done here; NULL: none
@@ -37,7 +38,6 @@ typedef struct bloom_state {
 
 enum { TAIL_ROOM = 4096, TAIL_BYTES = 8 }; // texels in shared memory, of one (bloom/tail.glsl)
 
-static const char *const names[] = {BLOOM_NAMES(KERNEL_NAME_TEXT)};
 static const char *const stage_names[BLOOM_STAGES] = {
     "STAGE_FIRST", "STAGE_DOWN",       "STAGE_TAIL", "STAGE_UP",
     "STAGE_LAST",  "STAGE_BLUR_FIRST", "STAGE_BLUR"};
@@ -212,9 +212,7 @@ static bool bloom_record(pass *p) {
 const pass_type bloom_type = {
     .name = "bloom",
     .shader = "pass/picture/bloom.comp",
-    .kernels = kernels,
-    .kernel_count = BLOOM_STAGES,
-    .names = {names, COUNT_OF(names)},
+    PASS_KERNELS,
     .declare = bloom_declare,
     .defines = bloom_defines,
     .update = bloom_update,

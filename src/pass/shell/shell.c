@@ -27,7 +27,7 @@ typedef enum shell_stage {
         NAME(image), NAME(front), NAME(drawn_front), NAME(shells), NAME(shell_count),              \
         NAME(bounds), NAME(picture), NAME(shell_at), NAME(far_side), NAME(ShellRecords),           \
         NAME(ShellVertices)
-enum { SHELL_NAMES(KERNEL_NAME_ID) };
+KERNEL_NAMES(SHELL_NAMES);
 
 typedef struct shell_state {
     const scene_explosions *list;     // NULL: one from time 0 on
@@ -40,7 +40,6 @@ typedef struct shell_state {
     graph_image z, drawn_front; // of what is drawn
 } shell_state;
 
-static const char *const names[] = {SHELL_NAMES(KERNEL_NAME_TEXT)};
 static const pass_kernel kernels[SHELL_STAGES] = {
     [SHELL_GATHER] = {.define = "STAGE_GATHER"},
     [SHELL_RAYS] = {.define = "STAGE_RAYS"},
@@ -264,9 +263,7 @@ const pass_type shell_type = {
     .name = "shell",
     .constructed = true,
     .shader = "pass/shell/shell.comp",
-    .kernels = kernels,
-    .kernel_count = SHELL_STAGES,
-    .names = {names, COUNT_OF(names)},
+    PASS_KERNELS,
     .declare = shell_declare,
     .defines = shell_defines,
     .target = shell_target,

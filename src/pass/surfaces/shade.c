@@ -117,9 +117,7 @@ static bool shade_record(pass *p) {
 const pass_type shade_type = {
     .name = "shade",
     .shader = "pass/surfaces/shade.comp",
-    .kernels = kernels,
-    .kernel_count = SHADE_KERNELS,
-    .names = {names, COUNT_OF(names)},
+    PASS_KERNELS,
     .declare = shade_declare,
     .defines = shade_defines,
     .foresees = shade_foresees,
