@@ -1,6 +1,6 @@
 // roil repro FILE: makes an output again as its recipe says, and compares.
 #include "app/app.h"
-#include "app/device_options.h"
+#include "app/arguments.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "base/memory.h"
@@ -19,7 +19,7 @@
 
 extern char **environ;
 
-enum { ARGUMENTS_MAX = 4200, UUID_AT = 21, UUID_SIZE = 36 }; // of a VDB file
+enum { UUID_AT = 21, UUID_SIZE = 36 }; // of a VDB file
 
 typedef struct job {
     const char *file, *named, *output; // what it was made of; its effect by the user; NULL: none
@@ -28,24 +28,8 @@ typedef struct job {
     char folder[PATH_CAP]; // of the new file
     const char *again;     // that
     arena memory;
-    const char *list[ARGUMENTS_MAX];
-    size_t count;
+    arguments list; // of the command that makes it
 } job;
-
-static void add(job *j, const char *text) {
-    if (j->count + 1 < ARGUMENTS_MAX) j->list[j->count++] = text;
-}
-
-static void add_device(job *j) {
-    const app_device *d = &j->device;
-    if (d->name) add(j, arena_format(&j->memory, "--device=%s", d->name));
-    if (d->memory) add(j, arena_format(&j->memory, "--memory=%s", d->memory));
-    for (size_t i = 0; d->assets && d->assets[i]; i++)
-        add(j, arena_format(&j->memory, "--assets=%s", d->assets[i]));
-    if (d->timeout > 0) add(j, arena_format(&j->memory, "--timeout=%.17g", d->timeout));
-    if (d->time_limit > 0) add(j, arena_format(&j->memory, "--time-limit=%.17g", d->time_limit));
-    if (d->no_cache) add(j, "--no-cache");
-}
 
 static bool is_whole(double frame) {
     return frame == rint(frame) && frame >= 0;
@@ -70,62 +54,61 @@ static void add_render(job *j, const char *effect) {
     const roil_made *m = j->made;
     const char *image = NULL;
     const char *beside = arena_format(&j->memory, "%s/picture.png", j->folder);
-    add(j, "roil");
-    add(j, "render");
-    add(j, arena_format(&j->memory, "--size=%ux%u", m->width, m->height));
+    arguments_add(&j->list, "roil");
+    arguments_add(&j->list, "render");
+    arguments_add(&j->list, arena_format(&j->memory, "--size=%ux%u", m->width, m->height));
     for (size_t i = 0; i < m->option_count; i++)
         if (strncmp(m->options[i], dump, sizeof dump - 1) == 0)
             image = m->options[i] + sizeof dump - 1;
         else
-            add(j, m->options[i]);
-    add(j, "--output");
-    add(j, image ? beside : j->again);
-    if (image) add(j, "--dump-pass");
-    if (image) add(j, image);
-    if (image) add(j, j->again);
-    add(j, arena_format(&j->memory, "--frames=%s", frames_of(j)));
-    add(j, effect);
+            arguments_add(&j->list, m->options[i]);
+    arguments_add(&j->list, "--output");
+    arguments_add(&j->list, image ? beside : j->again);
+    if (image) arguments_add(&j->list, "--dump-pass");
+    if (image) arguments_add(&j->list, image);
+    if (image) arguments_add(&j->list, j->again);
+    arguments_add(&j->list, arena_format(&j->memory, "--frames=%s", frames_of(j)));
+    arguments_add(&j->list, effect);
 }
 
 static void add_export(job *j, const char *effect) {
     const roil_made *m = j->made;
-    add(j, "roil");
-    add(j, "export");
-    add(j, "vdb");
-    for (size_t i = 0; i < m->option_count; i++) add(j, m->options[i]);
-    add(j, arena_format(&j->memory, "--output=%s/%%d.vdb", j->folder));
+    arguments_add(&j->list, "roil");
+    arguments_add(&j->list, "export");
+    arguments_add(&j->list, "vdb");
+    for (size_t i = 0; i < m->option_count; i++) arguments_add(&j->list, m->options[i]);
+    arguments_add(&j->list, arena_format(&j->memory, "--output=%s/%%d.vdb", j->folder));
     j->again = arena_format(&j->memory, "%s/%.0f.vdb", j->folder, m->frame);
-    add(j, arena_format(&j->memory, "--frames=%s", frames_of(j)));
-    add(j, effect);
+    arguments_add(&j->list, arena_format(&j->memory, "--frames=%s", frames_of(j)));
+    arguments_add(&j->list, effect);
 }
 
 static void add_sheet(job *j, const char *effect) {
     const roil_made *m = j->made;
-    add(j, "roil");
-    add(j, "export");
-    add(j, "sheet");
-    for (size_t i = 0; i < m->option_count; i++) add(j, m->options[i]);
-    add(j, arena_format(&j->memory, "--output=%s/%s", j->folder, m->sheet));
+    arguments_add(&j->list, "roil");
+    arguments_add(&j->list, "export");
+    arguments_add(&j->list, "sheet");
+    for (size_t i = 0; i < m->option_count; i++) arguments_add(&j->list, m->options[i]);
+    arguments_add(&j->list, arena_format(&j->memory, "--output=%s/%s", j->folder, m->sheet));
     j->again = arena_format(&j->memory, "%s/%s", j->folder, m->part);
-    if (str_ends_with(m->part, ".html")) add(j, arena_format(&j->memory, "--page=%s", j->again));
-    add(j, effect);
+    if (str_ends_with(m->part, ".html"))
+        arguments_add(&j->list, arena_format(&j->memory, "--page=%s", j->again));
+    arguments_add(&j->list, effect);
 }
 
 // Runs the command; what it prints to the standard output is left out.
 static bool run(job *j) {
     for (size_t i = 0; i < j->made->setting_count; i++) {
         const roil_setting *s = &j->made->settings[i];
-        add(j, "--set");
-        add(j, arena_format(&j->memory, "%s=%s", s->name, s->value));
+        arguments_add(&j->list, "--set");
+        arguments_add(&j->list, arena_format(&j->memory, "%s=%s", s->name, s->value));
     }
-    add_device(j);
-    j->list[j->count] = NULL;
+    arguments_add_device(&j->list, &j->device);
     posix_spawn_file_actions_t files;
     posix_spawn_file_actions_init(&files);
     posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
     pid_t child;
-    int failed =
-        posix_spawn(&child, "/proc/self/exe", &files, NULL, (char *const *)j->list, environ);
+    int failed = posix_spawn(&child, "/proc/self/exe", &files, NULL, j->list.list, environ);
     posix_spawn_file_actions_destroy(&files);
     int status = 1;
     while (!failed && waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
@@ -269,15 +252,16 @@ static int repro(void *user) {
     }
     remove_folder(j);
     roil_free_made(j->made);
+    arguments_free(&j->list);
     arena_free(&j->memory);
     return status;
 }
 
-static bool repro_check(void *user, poptContext arguments) {
+static bool repro_check(void *user, poptContext context) {
     job *j = user;
-    j->file = poptGetArg(arguments);
-    j->named = poptGetArg(arguments);
-    if (!j->file || poptPeekArg(arguments))
+    j->file = poptGetArg(context);
+    j->named = poptGetArg(context);
+    if (!j->file || poptPeekArg(context))
         return err_set("one file is made again, as in `roil repro shot.png`");
     return app_check_device(&j->device);
 }
