@@ -65,6 +65,13 @@ gpu_buffer *gpu_buffer_create(gpu *g, const gpu_buffer_desc *desc) {
     return buffer;
 }
 
+bool gpu_buffer_make(gpu *g, gpu_buffer **buffer, const char *label, uint64_t size) {
+    if (size == 0 || (*buffer && (*buffer)->size == size)) return true;
+    gpu_buffer_destroy(g, *buffer);
+    *buffer = gpu_buffer_create(g, &(gpu_buffer_desc){.label = label, .size = size});
+    return *buffer != NULL;
+}
+
 void gpu_buffer_destroy(gpu *g, gpu_buffer *buffer) {
     if (!buffer) return;
     vk_retire(g, buffer_free, buffer);

@@ -184,6 +184,9 @@ typedef struct gpu_buffer_desc {
 } gpu_buffer_desc;
 
 gpu_buffer *gpu_buffer_create(gpu *g, const gpu_buffer_desc *desc);
+// Makes a buffer in device memory. One of that size stays, another is replaced; at size 0 nothing
+// is done. False with a message.
+bool gpu_buffer_make(gpu *g, gpu_buffer **buffer, const char *label, uint64_t size);
 void gpu_buffer_destroy(gpu *g, gpu_buffer *buffer);
 uint64_t gpu_buffer_size(const gpu_buffer *buffer);
 bool gpu_buffer_write(gpu *g, gpu_buffer *buffer, uint64_t offset, const void *data, size_t size);

@@ -191,10 +191,8 @@ static bool make_buffers(pass *p) {
     for (p->buffer_count = 0; p->buffer_count < count;) {
         const pass_buffer *b = &buffers[p->buffer_count];
         p->buffers[p->buffer_count++] = b->at;
-        if (*b->at || !b->size) continue;
-        *b->at = gpu_buffer_create(p->host->device,
-                                   &(gpu_buffer_desc){.label = b->label, .size = b->size});
-        if (!*b->at) return err_prefix("%s: ", p->label);
+        if (!gpu_buffer_make(p->host->device, b->at, b->label, b->size))
+            return err_prefix("%s: ", p->label);
     }
     return true;
 }

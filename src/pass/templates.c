@@ -108,15 +108,10 @@ void template_set_list_memory(const template_set *t, uint64_t instances, uint64_
 }
 
 bool template_set_allocate(template_set *t, gpu *device, uint64_t instances, uint64_t masks) {
-    if (!t->masks)
-        t->masks = gpu_buffer_create(
-            device, &(gpu_buffer_desc){.label = "tiles of templates", .size = masks});
     t->unmarked = true;
-    if (!t->masks || t->instances) return t->masks != NULL;
-    t->instances =
-        gpu_buffer_create(device, &(gpu_buffer_desc){.label = "templates", .size = instances});
-    t->fresh = true;
-    return t->instances != NULL;
+    t->fresh = t->fresh || !t->instances;
+    return gpu_buffer_make(device, &t->masks, "tiles of templates", masks) &&
+           gpu_buffer_make(device, &t->instances, "templates", instances);
 }
 
 void template_set_destroy(template_set *t, gpu *device) {

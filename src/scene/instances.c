@@ -155,11 +155,7 @@ void scene_instances_list_memory(const scene_instances *s, budget_list *out) {
 }
 
 bool scene_instances_allocate(scene_instances *s, gpu *g) {
-    if (s->buffer) return true;
-    s->buffer = gpu_buffer_create(g, &(gpu_buffer_desc){.label = s->desc.name,
-                                                        .size = s->desc.count * sizeof *s->now,
-                                                        .kind = GPU_BUFFER_DEVICE});
-    return s->buffer != NULL;
+    return gpu_buffer_make(g, &s->buffer, s->desc.name, s->desc.count * sizeof *s->now);
 }
 
 bool scene_instances_upload(scene_instances *s, gpu *g) {

@@ -198,11 +198,8 @@ static void find_sizes(const flow *f, uint64_t out[FLOW_MEM_COUNT]) {
 bool flow_allocate(flow *f, gpu *g) {
     uint64_t sizes[FLOW_MEM_COUNT];
     find_sizes(f, sizes);
-    for (int i = 0; i < FLOW_MEM_COUNT; i++) {
-        if (f->buffers[i] || sizes[i] == 0) continue;
-        f->buffers[i] = gpu_buffer_create(g, &(gpu_buffer_desc){.label = "flow", .size = sizes[i]});
-        if (!f->buffers[i]) return false;
-    }
+    for (int i = 0; i < FLOW_MEM_COUNT; i++)
+        if (!gpu_buffer_make(g, &f->buffers[i], "flow", sizes[i])) return false;
     return flow_transform_allocate(f, g) &&
            kernel_readback_make(&f->report, g, "flow's report", FLOW_REPORT_WORDS);
 }

@@ -58,8 +58,8 @@ bool flow_transform_allocate(flow *f, gpu *g) {
     if (f->desc.solver != FLOW_TRANSFORM || f->modes) return true;
     float *modes = mem_alloc(size);
     flow_transform_modes(&f->desc, flow_transform_folds(&f->desc, f->tile), modes);
-    f->modes = gpu_buffer_create(g, &(gpu_buffer_desc){.label = "modes of a flow", .size = size});
-    bool done = f->modes && gpu_buffer_write(g, f->modes, 0, modes, size);
+    bool done = gpu_buffer_make(g, &f->modes, "modes of a flow", size) &&
+                gpu_buffer_write(g, f->modes, 0, modes, size);
     mem_free(modes);
     return done;
 }

@@ -176,12 +176,8 @@ static uint64_t moments_bytes(const lbm *l) {
 }
 
 bool lbm_allocate(lbm *l, gpu *g) {
-    for (uint32_t i = 0; i < l->layout.buffers; i++) {
-        if (!l->state[i])
-            l->state[i] = gpu_buffer_create(
-                g, &(gpu_buffer_desc){.label = "lattice", .size = state_bytes(l, i)});
-        if (!l->state[i]) return false;
-    }
+    for (uint32_t i = 0; i < l->layout.buffers; i++)
+        if (!gpu_buffer_make(g, &l->state[i], "lattice", state_bytes(l, i))) return false;
     return lbm_step_allocate(l, g) && lbm_walls_allocate(l, g);
 }
 
@@ -272,9 +268,5 @@ bool lbm_make_moments(lbm *l, gpu *g, uint32_t which) {
         return err_set("moments of %u x %u x %u cells take %llu MiB; the device can bind %llu",
                        l->desc.size[0], l->desc.size[1], l->desc.size[2],
                        (unsigned long long)(size >> 20), (unsigned long long)(range >> 20));
-    gpu_buffer **next = &l->moments[which];
-    if (!*next)
-        *next =
-            gpu_buffer_create(g, &(gpu_buffer_desc){.label = "lattice's moments", .size = size});
-    return *next != NULL;
+    return gpu_buffer_make(g, &l->moments[which], "lattice's moments", size);
 }

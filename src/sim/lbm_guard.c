@@ -60,12 +60,9 @@ bool lbm_guard_allocate(lbm_guard *guard, gpu *g) {
     if (guard->report.image) return true;
     for (int i = 0; i < 2; i++)
         if (!kernel_build(&guard->kernels[i], g)) return false;
-    guard->parts = gpu_buffer_create(
-        g, &(gpu_buffer_desc){.label = "guard", .size = (uint64_t)guard->groups * RECORD});
     const uint32_t none[LBM_NOTES] = {0};
-    guard->notes =
-        gpu_buffer_create(g, &(gpu_buffer_desc){.label = "guard's notes", .size = sizeof none});
-    return guard->parts && guard->notes &&
+    return gpu_buffer_make(g, &guard->parts, "guard", (uint64_t)guard->groups * RECORD) &&
+           gpu_buffer_make(g, &guard->notes, "guard's notes", sizeof none) &&
            kernel_readback_make(&guard->report, g, "guard's report", WORDS) &&
            gpu_buffer_write(g, guard->notes, 0, none, sizeof none);
 }

@@ -40,10 +40,6 @@ bool lbm_walls_build(lbm *l, gpu *g) {
     return !l->desc.bodies || kernel_build(&l->walls.kernel.base, g);
 }
 
-static gpu_buffer *make(gpu *g, const char *label, uint64_t size) {
-    return gpu_buffer_create(g, &(gpu_buffer_desc){.label = label, .size = size});
-}
-
 static uint64_t waves_bytes(const lbm *l) { // as lbm_wave_at of walls.glsl counts them
     const uint64_t nx = l->desc.size[0], ny = l->desc.size[1];
     return 16 * (2 * (nx + ny) * l->layout.layers + 2 * nx * ny);
@@ -57,16 +53,9 @@ static const char waves_label[] = "waves at open faces", cells_label[] = "kinds 
 
 bool lbm_walls_allocate(lbm *l, gpu *g) {
     lbm_walls *w = &l->walls;
-    if (has_rims(&l->desc) && !w->waves) {
-        w->waves = make(g, waves_label, waves_bytes(l));
-        if (!w->waves) return false;
-    }
-    for (int i = 0; l->desc.bodies && i < 2; i++) {
-        if (w->cells[i]) continue;
-        w->cells[i] = make(g, cells_label, cells_bytes(l));
-        if (!w->cells[i]) return false;
-    }
-    return true;
+    for (int i = 0; l->desc.bodies && i < 2; i++)
+        if (!gpu_buffer_make(g, &w->cells[i], cells_label, cells_bytes(l))) return false;
+    return !has_rims(&l->desc) || gpu_buffer_make(g, &w->waves, waves_label, waves_bytes(l));
 }
 
 void lbm_walls_list_memory(const lbm *l, budget_list *out) {
@@ -164,11 +153,9 @@ static void note_motions(lbm_walls *w, const lbm_bodies *bodies, bool *moves, bo
 
 static bool write_motions(lbm_walls *w, gpu *g) {
     const uint64_t size = w->motion_count * sizeof *w->motions;
-    if (!w->bodies || gpu_buffer_size(w->bodies) < size) {
-        gpu_buffer_destroy(g, w->bodies);
-        w->bodies = make(g, "motions of bodies", size);
-    }
-    const bool done = w->bodies && gpu_buffer_write(g, w->bodies, 0, w->motions, size);
+    const bool fits = w->bodies && gpu_buffer_size(w->bodies) >= size;
+    const bool done = (fits || gpu_buffer_make(g, &w->bodies, "motions of bodies", size)) &&
+                      gpu_buffer_write(g, w->bodies, 0, w->motions, size);
     if (!done) w->motion_count = 0; // they are not there
     return done;
 }

@@ -285,12 +285,8 @@ static const char *const memory_labels[PYRO_MEM_COUNT] = {"velocity of burning g
 bool pyro_allocate(pyro *p, gpu *g) {
     uint64_t sizes[PYRO_MEM_COUNT];
     find_sizes(p, sizes);
-    for (int i = 0; i < PYRO_MEM_COUNT; i++) {
-        if (p->buffers[i] || sizes[i] == 0) continue;
-        p->buffers[i] =
-            gpu_buffer_create(g, &(gpu_buffer_desc){.label = memory_labels[i], .size = sizes[i]});
-        if (!p->buffers[i]) return false;
-    }
+    for (int i = 0; i < PYRO_MEM_COUNT; i++)
+        if (!gpu_buffer_make(g, &p->buffers[i], memory_labels[i], sizes[i])) return false;
     return pyro_allocate_guide(p, g) &&
            kernel_readback_make(&p->report, g, "report of burning gas", PYRO_REPORT_WORDS);
 }

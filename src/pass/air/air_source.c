@@ -162,12 +162,6 @@ static uint64_t bytes_of(const pass *p, uint64_t each, uint64_t cells) {
     return each * cells < most ? each * cells : most;
 }
 
-static bool make_buffer(pass *p, const char *label, uint64_t size, gpu_buffer **out) {
-    if (*out) gpu_buffer_destroy(p->host->device, *out);
-    *out = gpu_buffer_create(p->host->device, &(gpu_buffer_desc){.label = label, .size = size});
-    return *out != NULL;
-}
-
 static bool make_values(pass *p, air_source *s) {
     const float *n = s->cells.count;
     uint64_t size = SOURCE_VALUE * (uint64_t)n[0] * (uint64_t)n[1] * (uint64_t)n[2];
@@ -179,9 +173,10 @@ static bool make_values(pass *p, air_source *s) {
                        (double)n[0], (double)n[1], (double)n[2],
                        (unsigned long long)(most / SOURCE_VALUE));
     s->known = false;
-    return make_buffer(p, values_label, bytes_of(p, SOURCE_VALUE, s->most), &s->values) &&
+    gpu *device = p->host->device;
+    return gpu_buffer_make(device, &s->values, values_label, bytes_of(p, SOURCE_VALUE, s->most)) &&
            (!p->particles ||
-            make_buffer(p, marks_label, bytes_of(p, SOURCE_MARK, s->most), &s->marks));
+            gpu_buffer_make(device, &s->marks, marks_label, bytes_of(p, SOURCE_MARK, s->most)));
 }
 
 // Values that depend on numbers only, and these are as they were, are known already.

@@ -192,8 +192,6 @@ static void point_lights_list_memory(const pass *p, budget_list *out) {
 
 static bool make_buffer(pass *p, lists_buffer which, uint64_t size) {
     gpu *device = p->host->device;
-    gpu_buffer **buffer = &p->point_lights->buffers[which];
-    if (size == 0 || (*buffer && gpu_buffer_size(*buffer) == size)) return true;
     uint64_t most = gpu_get_info(device)->max_storage_range;
     if (size > most)
         return err_set(
@@ -201,9 +199,7 @@ static bool make_buffer(pass *p, lists_buffer which, uint64_t size) {
             "binds (%llu); fewer point lights, point_lights_by = \"all\" or a smaller picture need "
             "less",
             p->label, p->point_lights->count, (unsigned long long)size, (unsigned long long)most);
-    gpu_buffer_destroy(device, *buffer);
-    *buffer = gpu_buffer_create(device, &(gpu_buffer_desc){.label = labels[which], .size = size});
-    return *buffer != NULL;
+    return gpu_buffer_make(device, &p->point_lights->buffers[which], labels[which], size);
 }
 
 static bool make_buffers(pass *p, const tiling *t) {

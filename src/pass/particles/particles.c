@@ -103,19 +103,15 @@ static bool make_triangles(pass *p, particles_state *s) {
     return done || err_prefix("%s: ", p->meshes[0]->name);
 }
 
-static bool make(gpu *device, const char *label, uint64_t size, gpu_buffer **out) {
-    if (!*out) *out = gpu_buffer_create(device, &(gpu_buffer_desc){.label = label, .size = size});
-    return *out != NULL;
-}
-
 static bool make_buffers(const pass *p, particles_state *s) {
     gpu *device = p->host->device;
     uint64_t left = s->desc.count;
-    bool done = !s->carries || make(device, "quantities", 4 * left, &s->buffers.quantities);
+    bool done =
+        !s->carries || gpu_buffer_make(device, &s->buffers.quantities, "quantities", 4 * left);
     for (uint32_t i = 0; i < parts_of(s) && done; i++) {
         uint64_t here = left < PASS_PARTICLES_EACH ? left : PASS_PARTICLES_EACH;
-        done = make(device, "positions", 16 * here, &s->buffers.positions[i]) &&
-               make(device, "velocities", 16 * here, &s->buffers.velocities[i]);
+        done = gpu_buffer_make(device, &s->buffers.positions[i], "positions", 16 * here) &&
+               gpu_buffer_make(device, &s->buffers.velocities[i], "velocities", 16 * here);
         left -= here;
     }
     return done;

@@ -18,10 +18,9 @@ bool particles_open_at(pass *p, particles_state *s) {
 bool particles_make_at(pass *p, particles_state *s) {
     particles_at *at = &s->at;
     if (!s->desc.at || at->buffer) return true;
-    at->buffer =
-        gpu_buffer_create(p->host->device, &(gpu_buffer_desc){.label = "shares of births",
-                                                              .size = at->count * sizeof(float)});
-    return at->buffer && scene_instances_allocate(s->desc.at, p->host->device);
+    return gpu_buffer_make(p->host->device, &at->buffer, "shares of births",
+                           at->count * sizeof(float)) &&
+           scene_instances_allocate(s->desc.at, p->host->device);
 }
 
 // Those that are not shown, too: what burns may have fallen.

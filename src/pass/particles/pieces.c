@@ -158,12 +158,8 @@ static bool pieces_update(pass *p) {
 }
 
 static bool make_buffer(pass *p, gpu_buffer **buffer, const char *label, uint64_t size) {
-    gpu *device = p->host->device;
-    if (*buffer && gpu_buffer_size(*buffer) == size) return true;
-    gpu_buffer_destroy(device, *buffer);
-    *buffer = gpu_buffer_create(device, &(gpu_buffer_desc){.label = label, .size = size});
-    state_of(p)->empty = false;
-    return *buffer || err_prefix("%s: ", p->label);
+    if (!*buffer || gpu_buffer_size(*buffer) != size) state_of(p)->empty = false;
+    return gpu_buffer_make(p->host->device, buffer, label, size) || err_prefix("%s: ", p->label);
 }
 
 // What the triangles look like in this frame.

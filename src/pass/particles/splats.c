@@ -177,11 +177,8 @@ static bool make_buffer(pass *p, splats_buffer which, uint64_t size) {
         return err_set("%s: %llu bytes are needed at once, and the device binds %llu at most; "
                        "a smaller 'resolution', fewer 'entries' or particles need less",
                        p->label, (unsigned long long)size, (unsigned long long)most);
-    gpu_buffer_destroy(device, s->buffers[which]);
-    s->buffers[which] =
-        gpu_buffer_create(device, &(gpu_buffer_desc){.label = names[which], .size = size});
     s->empty = s->empty && which != SPLATS_SUMS;
-    return s->buffers[which] != NULL;
+    return gpu_buffer_make(device, &s->buffers[which], names[which], size);
 }
 
 // Bytes; 0: not needed.
