@@ -71,6 +71,14 @@ const char *vm_caller_file(lua_State *L, int *line);
 void vm_load_chunk(lua_State *L, const char *root, const char *path, const char *shown, bool ours);
 const vm_desc *vm_get_desc(lua_State *L);
 
+// ---- vm_place.c, for vm.c ---------------------------------------------------------------------
+
+enum { VM_MESSAGE_MAX = 4000 };
+#define VM_CALLED_FROM "\ncalled from " // before each of the callers in a message
+// Message handler: turns whatever was thrown into text, with its callers below.
+int vm_describe_error(lua_State *L);
+void vm_set_ours(lua_State *L, bool ours); // what is allocated is out of the script's reach
+
 // The parts of the sandbox; each leaves the stack as it was.
 void sandbox_open(lua_State *L); // libraries and strict globals
 void pattern_open(lua_State *L); // string.find, match, gmatch, gsub
