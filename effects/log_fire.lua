@@ -17,7 +17,7 @@ local heat       = param { "heat", 1, min = 0, max = 3, help = "that the logs gi
 local licks      = param { "licks", 1, min = 0, max = 10, help = "strength of the small templates among the logs" }
 local billows    = param { "billows", 1, min = 0, max = 10, help = "strength of the large ones above" }
 local thickness  = param { "thickness", 0.5, min = 0, max = 20, unit = "1/m", help = "how dense the smoke is" }
-local brightness = param { "brightness", 30, min = 0, max = 100, help = "factor of the flames' light" }
+local brightness = param { "brightness", 70, min = 0, max = 200, help = "factor of the flames' light" }
 local embers     = param { "embers", 90, min = 0, max = 2000, unit = "1/s", help = "that fly up" }
 local wobble     = param { "wobble", 0.1, min = 0, max = 1, unit = "m", help = "how far the volume is bent out of its round shape" }
 
@@ -51,21 +51,22 @@ for _, sense in ipairs { "left", "right" } do
 end
 
 -- One sample for all that is shown: the offset is evaluated once for each of these voxels. Noise makes
--- ragged what is finer than they are.
+-- ragged what is finer than they are. It is asked at points that are pressed together in height, which
+-- draws it out upwards, as flames are.
 local turned = bake(vec(flow.density, flow.temperature, 0), { size = {cells(128), cells(128), cells(256)} })
-local ragged = worley { frequency = 3.2, octaves = 3, persistence = 0.55, drift = {0, 0, -2}, speed = 0.6, seed = 11 }
+local ragged = worley { frequency = 5, octaves = 3, persistence = 0.55, drift = {0, 0, -1}, speed = 0.6, seed = 11 }:warp(vec(0, 0, -0.6 * position.z), 1)
 
 -- All is gone where the slices end (at 0.9 m) and where there is hardly any soot, so that their edge is not
 -- seen: smoke by its density, flames by their heat, which keeps the round form of a flame that ends there.
 local away   = 1 - smoothstep(0.45, 0.85, length(vec(position.x, position.y, 0)))
 local soot   = smoothstep(0.04, 0.2, turned.x)
-local hot    = turned.y * (0.5 + 0.8 * ragged) * away * sqrt(soot)
+local hot    = turned.y * (0.5 + 1.1 * smoothstep(0.3, 0.8, ragged)) * away * sqrt(soot)
 
 -- Flames are thin, and hide nothing: soot that glows, the hotter the brighter.
-local glow  = palette { {0.15, {0, 0, 0}}, {0.3, {0.16, 0.035, 0.004}}, {0.5, {1, 0.30, 0.04}}, {0.8, {1.6, 0.75, 0.16}}, {1.2, {2, 1.3, 0.5}} }
+local glow  = palette { {0.15, {0, 0, 0}}, {0.3, {0.16, 0.025, 0.002}}, {0.5, {1, 0.22, 0.02}}, {0.8, {1.6, 0.52, 0.06}}, {1.2, {2, 0.9, 0.16}} }
 local flame = glow(hot).rgb
 
-fx.camera = camera { eye = {0.6, -4.6, 0.85}, target = {0, 0, 0.95}, fov = 32, near = 0.05, far = 500 }
+fx.camera = camera { eye = {0.6, -4.6, 0.85}, target = {0, 0, 0.82}, fov = 27, near = 0.05, far = 500 }
 fx.sun    = sun { azimuth = 60, elevation = 40, color = {0.55, 0.7, 1}, strength = 0.04 } -- the moon
 fx.sky    = sky { zenith = {0.003, 0.005, 0.012}, horizon = {0.010, 0.012, 0.020} }
 
@@ -80,16 +81,18 @@ local solid  = shade { from = {scene, lit}, shadow_samples = 2 }
 local wind   = curl { frequency = 1.5, speed = 0.6, seed = 9 } * 0.5
 local chips  = particles {
   name = "embers", count = 2048, rate = embers, lifetime = {0.6, 2.6}, seed = 4, position = {0, 0, 0.3}, radius = 0.25,
-  velocity = flow.velocity + wind + {0, 0, 0.5},
+  velocity = clamp(flow.velocity, -3, 3) + wind + {0, 0, 0.5},
 }
 local sparks = splats {
-  name = "sparks", from = {chips, scene, lit}, size = over_age { {0, 0.016}, {1, 0.006} },
-  color = over_age { {0, {1, 0.5, 0.16}}, {0.6, {1, 0.24, 0.04}}, {1, {0.1, 0.01, 0}} }, brightness = 40, streak = 0.02,
+  name = "sparks", from = {chips, scene, lit}, size = over_age { {0, 0.008}, {1, 0.004} },
+  color = over_age { {0, {1, 0.40, 0.07}}, {0.6, {1, 0.16, 0.02}}, {1, {0.1, 0.01, 0}} }, brightness = 40, streak = 0.02,
 }
 
 local picture = solid
 if rendering ~= "particles" then
-  local volume = march { from = {lit, scene}, steps = 128, jitter = 0.5 }
+  -- An eye sees both the flames orange and the ground that they light, which a display cannot show: it
+  -- would show white flames. So the picture gets a fifth of the light that the ground gets.
+  local volume = march { from = {lit, scene}, emission = flame * brightness * 0.2, steps = 128, jitter = 0.5 }
   picture = over { volume, picture, from = {volume, scene} }
 end
 if rendering ~= "volume" then
@@ -99,7 +102,7 @@ if rendering ~= "volume" then
   }
   local drawn = splats {
     name = "flames", from = {carried, scene, lit}, size = over_age { {0, 0.05}, {1, 0.12} },
-    color = glow(particle_quantity).rgb, brightness = 0.35, soften = 0.05,
+    color = glow(particle_quantity).rgb, brightness = 0.16, soften = 0.05,
   }
   picture = over { drawn, picture, from = {drawn, scene} }
 end
