@@ -130,14 +130,15 @@ local ash = particles { -- lies where it falls
 }
 
 -- What is near is drawn particle by particle; all of it together is a coarse grid, for the smoke and its light.
+-- A cell of it is 1.7 m wide. What is put into it is at least two cells large, else the cells show as blocks.
 local sky_box = { min = {-60, -40, 0}, max = {100, 110, 62} }
-local air  = deposit { smoke, box = sky_box, resolution = 96, size = over_age { {0, 1.6}, {0.3, 3}, {1, 4.5} }, opacity = over_age { {0, 0.5}, {1, 0.06} } }
-local heat = deposit { flames, box = sky_box, resolution = 96, size = 1, opacity = over_age { {0, 1}, {1, 0.2} } }
+local air  = deposit { smoke, box = sky_box, resolution = 96, size = over_age { {0, 3.4}, {0.3, 4.2}, {1, 5.5} }, opacity = over_age { {0, 0}, {0.04, 0.2}, {0.3, 0.25}, {1, 0.08} } }
+local heat = deposit { flames, box = sky_box, resolution = 96, size = 3.4, opacity = over_age { {0, 0.09}, {1, 0.02} } }
 local bed  = deposit { ash, box = { min = {-66, -40, -1}, max = {78, 80, 26} }, resolution = 112, size = 1.1, opacity = 1.6 }
 
 local lumps  = worley { frequency = 0.22, octaves = 3, persistence = 0.55, drift = {-1.2, -0.5, -1.2}, seed = 11 }:tile { resolution = 96, octaves = 2 }
 local medium = lighting {
-  density = air.density * smoothstep(0.1, 0.55, lumps) * soot * 1.5, emission = vec(1, 0.33, 0.06) * heat.density * blaze * 0.5,
+  density = air.density * smoothstep(0.2, 0.6, lumps) * soot * 1.5, emission = vec(1, 0.33, 0.06) * heat.density * blaze * 0.5,
   albedo = {0.42, 0.38, 0.35}, anisotropy = 0.4, shadow_resolution = 64, sampling = "linear", fire_lights = 0,
 }
 local lamps = point_lights {
@@ -154,11 +155,12 @@ local solid   = shade { albedo = colors.color, from = {scene, medium, lamps, sha
                         model = look == "drawn" and "toon" or "physical" }
 if look == "drawn" then solid = over { outline { from = scene, thickness = 3, reach = 250 }, solid } end
 
-local volume = march { from = {medium, scene}, steps = 40, jitter = 0.5, resolution = 0.35 }
-local tongue = palette { {0, {2.0, 0.85, 0.20}}, {0.35, {1.8, 0.46, 0.05}}, {0.7, {0.9, 0.11, 0.01}}, {1, {0, 0, 0}} }
+-- Flames are drawn as particles below. In the grid they light the smoke and the ground, and are not seen.
+local volume = march { from = {medium, scene}, emission = {0, 0, 0}, steps = 40, jitter = 0.5, resolution = 0.35 }
+local tongue = palette { {0, {2.0, 0.72, 0.13}}, {0.35, {1.8, 0.38, 0.03}}, {0.7, {0.9, 0.11, 0.01}}, {1, {0, 0, 0}} }
 local near   = splats {
-  from = {flames, scene, medium}, size = over_age { {0, 0.22}, {0.3, 0.42}, {1, 0.06} }, color = tongue(particle_age).rgb * 1.6 * blaze,
-  streak = 0.09, soften = 0.3,
+  from = {flames, scene, medium}, size = over_age { {0, 0.18}, {0.3, 0.36}, {1, 0.05} }, color = tongue(particle_age).rgb * 2.8 * blaze,
+  streak = 0.14, soften = 0.3,
 }
 local flying = splats { from = {sparks, scene}, size = 0.02 + 0.05 * particle_random * particle_random, color = vec(1, 0.35, 0.06) * over_age { {0, 1}, {1, 0} }, brightness = 90, streak = 0.04 }
 
