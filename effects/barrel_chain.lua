@@ -56,7 +56,7 @@ fire:on_burned(function(i, t)
   local one = barrels:get(i)
   local x, y, z = one.position[1], one.position[2], one.position[3]
   blasts:add { t, position = {x, y, z + 0.55}, size = 0.85 + 0.5 * one.random, seed = i }
-  barrels:set(i, { kind = 2, position = {x, y, 0.002 * i}, scale = 1.1 + 0.6 * one.random, state = {one.state[1], t, z} })
+  barrels:set(i, { kind = 2, position = {x, y, 0.0003 * i}, scale = 1.1 + 0.6 * one.random, state = {one.state[1], t, z} })
 end)
 fx:on_key("f", function() fire:ignite(1) end, "light the first of the row")
 fx:on_click(function(event) if event.hit then fire:ignite_near(event.hit.position, 1) end end, "light the barrel there")
@@ -82,16 +82,26 @@ local lamps = point_lights {
   power = burning * (0.75 + 0.25 * sin(41 * time + 60 * instance_random)) * (is_lit + 0.7 * puddle)
         + flare * smoothstep(0, 0.09, burst_for) * smoothstep(0.85, 0.05, burst_for),
 }
-local shards = particles {
-  at = barrels, share = step(0, burst_for) * step(burst_for, 0.04), rate = pieces_of * 24, count = 2048, lifetime = {2.5, 5}, seed = 3,
-  position = {0, 0, 0.5}, radius = 0.3, outward = speed * 0.5, speed = vec(0, 0, 1) * speed, spread = 62, variation = 0.75,
-  gravity = 9.81, drag = 0.12, collide = position.z, clearance = 0.05, bounce = 0.32, friction = 0.45,
-}
+-- Strips of its wall fly from a barrel, and its lid. Both fall as stones do; the lid goes up before all else.
+local function debris(settings)
+  local all = {
+    at = barrels, share = step(0, burst_for) * step(burst_for, 0.04), lifetime = {2.5, 5}, seed = 3,
+    position = {0, 0, 0.5}, radius = 0.3, outward = speed * 0.5, speed = vec(0, 0, 1) * speed, spread = 62, variation = 0.75,
+    gravity = 9.81, drag = 0.12, collide = position.z, clearance = 0.05, bounce = 0.32, friction = 0.45,
+  }
+  for key, value in pairs(settings) do all[key] = value end
+  return particles(all)
+end
+local shards = debris { name = "shards", rate = pieces_of * 24, count = 2048 }
+local lids   = debris { name = "lids", rate = 24, count = 32, lifetime = 6, position = {0, 0, 0.9}, radius = 0.05, outward = 0, spread = 25, variation = 0.3 }
 local ground = mesh { "data/ground.obj", color = {0.6, 0.6, 0.65}, material = material { specular = 0.09, roughness = 0.42 } } -- damp
 local scene = geometry { ground, mesh { "data/yard.obj" }, barrels }
--- Few are large, and most are black with soot, so that paint is seen on some only.
-local paint = (0.5 + 0.5 * sin(97 * particle_random)) ^ 3
-local drawn = pieces { shards, mesh { "data/shard.obj" }, from = scene, size = 0.22 + 0.6 * particle_random ^ 4, color = vec(0.3, 0.45, 0.5) + paint * vec(0.7, 0.45, 0.4), angle = 1300 * (particle_random - 0.5) * over_age { {0, 0}, {0.35, 1}, {1, 1.1} } }
+-- Few are large, and most are black with soot, so that paint is seen on some only. They tumble until they lie.
+local paint  = (0.5 + 0.5 * sin(97 * particle_random)) ^ 3
+local soot   = vec(0.3, 0.45, 0.5) + paint * vec(0.7, 0.45, 0.4)
+local tumble = 1300 * (particle_random - 0.5) * over_age { {0, 0}, {0.35, 1}, {1, 1.1} }
+local strips = pieces { shards, mesh { "data/scrap.obj" }, from = scene, size = 0.25 + 0.6 * particle_random ^ 4, color = soot, angle = tumble }
+local drawn  = pieces { lids, mesh { "data/lid.obj" }, from = strips, color = soot, angle = tumble }
 local solid = shade { from = {drawn, scene, lamps}, point_light_shadows = "rays", haze = 0.004 }
 
 -- ---- the bursts -------------------------------------------------------------------------------------
@@ -109,8 +119,8 @@ local ball = shell {
   name = "ball", at = blasts, from = drawn, life = life,
   radius = size * (1 - exp(-growth * shell_age) + 0.35 * shell_age), position = vec(0, 0, height_of(shell_age)),
   displacement = extrusion * lumps, shell_depth = mix(-0.3, 1.12, shell_age ^ 0.8), clip = left,
-  color = gradient(at).rgb * (0.55 + 0.45 * dot(shell_view, shell_normal)) + vec(1.6, 0.35, 0.05) * smoothstep(0.045, 0, left) * smoothstep(1, 0.5, shell_age),
-  albedo = 0.09 * smoothstep(0.55, 0.85, at), opacity = smoothstep(0, 0.03, left), soften = 0.1,
+  color = gradient(at).rgb * (0.55 + 0.45 * dot(shell_view, shell_normal)) + vec(1.3, 0.28, 0.04) * smoothstep(0.16, 0, left) * smoothstep(1, 0.5, shell_age),
+  albedo = 0.09 * smoothstep(0.55, 0.85, at), opacity = smoothstep(0, 0.16, left), soften = 0.1,
 }
 local whole = 4.2 -- seconds that a globe of smoke is there, the first 0.15 of them behind the fire
 local old = clamp((shell_age * whole - 0.15) / (whole - 0.15), 0, 1)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Write effects/data/shard.obj and scorch.obj: what is left of a barrel that has blown up.
+"""Write shard.obj, scrap.obj, lid.obj and scorch.obj: what is left of a barrel that has blown up.
 
   python3 scripts/data/make_blast.py effects/data
 """
@@ -34,10 +34,63 @@ def shard():
     return outside + inside, faces
 
 
+def sheet(rows, columns, place, thickness):
+    """Two grids of corners, outside and inside, and a rim between them."""
+    corners, faces = [], {"paint": [], "bare": []}
+    for depth in (0, thickness):
+        corners += [place(i / columns, j / rows, depth) for j in range(rows + 1) for i in range(columns + 1)]
+    back = len(corners) // 2
+
+    def at(i, j):
+        return j * (columns + 1) + i + 1
+
+    for j in range(rows):
+        for i in range(columns):
+            a, b, c, d = at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)
+            faces["paint"] += [(a, b, c), (a, c, d)]
+            faces["bare"] += [(back + a, back + c, back + b), (back + a, back + d, back + c)]
+    rim = [at(i, 0) for i in range(columns)] + [at(columns, j) for j in range(rows)]
+    rim += [at(i, rows) for i in range(columns, 0, -1)] + [at(0, j) for j in range(rows, 0, -1)]
+    for a, b in zip(rim, rim[1:] + rim[:1]):
+        faces["bare"] += [(a, back + a, back + b), (a, back + b, b)]
+    return corners, faces
+
+
+def scrap():
+    """A strip of a drum's wall with its hoop: half unrolled, twisted, torn at its edges and folded at one."""
+    torn = [[dice.uniform(-0.06, 0.03) for _ in range(40)] for _ in range(2)]
+    heights = (-0.2, -0.06, -0.03, 0.0, 0.03, 0.06, 0.2)
+
+    def place(u, v, depth):
+        along, height = 2.3 * (u - 0.5), heights[round(6 * v)]
+        if u in (0, 1):
+            along += 2.2 * torn[0][round(6 * v) + 10 * round(u)]
+        if v in (0, 1):
+            height += torn[1][round(6 * u) + 10 * round(v)]
+        hoop = 0.022 if v == 0.5 else 0.0
+        radius = 0.2 + 0.1 * u + hoop - depth           # a roll that opens
+        radius += 0.9 * max(0.0, -height - 0.04) ** 1.3  # folded outwards
+        angle = along + 1.1 * height                     # and twisted
+        return (radius * math.cos(angle) - 0.2, radius * math.sin(angle), height)
+
+    return sheet(6, 6, place, 0.012)
+
+
+def lid():
+    """A drum's lid with its rim, bulged by the blast and bent across the middle."""
+
+    def place(u, v, depth):
+        far, rise = ((0.0, 0.05), (0.15, 0.035), (0.26, 0.0), (0.285, 0.03))[round(3 * v)]
+        x, y = far * math.cos(2 * math.pi * u), far * math.sin(2 * math.pi * u)
+        return (x, y, rise - depth + 1.6 * max(0.0, x + 0.4 * y) ** 2)
+
+    return sheet(3, 14, place, 0.012)
+
+
 def scorch():
     """A mark on the ground, darker towards its middle, with streaks where it was blown away."""
     corners, faces, count = [], {}, 40
-    layers = (("singed", 1.0, 0.32, 0.003), ("soot", 0.74, 0.28, 0.006), ("char", 0.46, 0.25, 0.009))
+    layers = (("singed", 1.0, 0.32, 0.001), ("soot", 0.74, 0.28, 0.002), ("char", 0.46, 0.25, 0.003))
     for name, reach, ragged, height in layers:
         first = len(corners) + 1
         corners.append((0.0, 0.0, height))
@@ -65,5 +118,8 @@ def write(path, name, materials, shape):
 
 
 folder = sys.argv[1]
-write(folder, "shard", {"paint": (0.30, 0.032, 0.016), "bare": (0.10, 0.085, 0.08)}, shard())
+steel = {"paint": (0.30, 0.032, 0.016), "bare": (0.10, 0.085, 0.08)}
+write(folder, "shard", steel, shard())
 write(folder, "scorch", {"singed": (0.062, 0.052, 0.044), "soot": (0.026, 0.022, 0.020), "char": (0.008, 0.007, 0.007)}, scorch())
+write(folder, "scrap", steel, scrap())
+write(folder, "lid", steel, lid())
