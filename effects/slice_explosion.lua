@@ -52,9 +52,9 @@ local lumps = worley { frequency = 0.9, octaves = 4, persistence = 0.6, lacunari
 local cover = clamp(turned.x * 1.6, 0, 1)
 local smoke = cover * smoothstep(0, 0.2, cover - eaten * (1 - lumps) * (1 - 0.7 * cover))
 local fire  = palette { blackbody = {500, 4500}, physical = true, reference = 1500 }
-local hot   = turned.y * (0.12 + 1.5 * lumps * lumps)
+local hot   = turned.y * (0.1 + 1.6 * smoothstep(0.33, 0.9, lumps)) -- lumps of fire, and dark soot between them
 local flash = curve { {0, 4}, {0.2, 3}, {0.7, 1.2}, {1, 1} } -- fierce at first
-local glow  = fire(mix(1200, 2300, clamp(hot * 0.6, 0, 1))) * smoothstep(0.12, 0.7, hot) * brightness * flash
+local glow  = fire(mix(1100, 2500, clamp(hot * 0.6, 0, 1))) * smoothstep(0.1, 0.8, hot) * brightness * flash
 
 fx.camera = camera { eye = {0, -22, 2}, target = {0, 0, 4.6}, fov = 30, near = 0.1, far = 500 }
 fx.sun    = sun { azimuth = 239, elevation = 34, color = {1, 0.93, 0.82}, strength = 4.6 }
