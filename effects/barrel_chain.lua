@@ -97,7 +97,7 @@ local lids   = debris { name = "lids", rate = 24, count = 32, lifetime = 6, posi
 local ground = mesh { "data/ground.obj", color = {0.6, 0.6, 0.65}, material = material { specular = 0.09, roughness = 0.42 } } -- damp
 local scene = geometry { ground, mesh { "data/yard.obj" }, barrels }
 -- Few are large, and most are black with soot, so that paint is seen on some only. They tumble until they lie.
-local paint  = (0.5 + 0.5 * sin(97 * particle_random)) ^ 3
+local paint  = (0.5 + 0.5 * sin(97 * particle_random)) ^ 5
 local soot   = vec(0.3, 0.45, 0.5) + paint * vec(0.7, 0.45, 0.4)
 local tumble = 1300 * (particle_random - 0.5) * over_age { {0, 0}, {0.35, 1}, {1, 1.1} }
 local strips = pieces { shards, mesh { "data/scrap.obj" }, from = scene, size = 0.25 + 0.6 * particle_random ^ 4, color = soot, angle = tumble }

@@ -159,8 +159,8 @@ if look == "drawn" then solid = over { outline { from = scene, thickness = 3, re
 local volume = march { from = {medium, scene}, emission = {0, 0, 0}, steps = 40, jitter = 0.5, resolution = 0.35 }
 local tongue = palette { {0, {2.0, 0.72, 0.13}}, {0.35, {1.8, 0.38, 0.03}}, {0.7, {0.9, 0.11, 0.01}}, {1, {0, 0, 0}} }
 local near   = splats {
-  from = {flames, scene, medium}, size = over_age { {0, 0.18}, {0.3, 0.36}, {1, 0.05} }, color = tongue(particle_age).rgb * 2.8 * blaze,
-  streak = 0.14, soften = 0.3,
+  from = {flames, scene, medium}, size = over_age { {0, 0.3}, {0.3, 0.6}, {1, 0.08} }, color = tongue(particle_age).rgb * 1.3 * blaze,
+  streak = 0.12, soften = 0.3,
 }
 local flying = splats { from = {sparks, scene}, size = 0.02 + 0.05 * particle_random * particle_random, color = vec(1, 0.35, 0.06) * over_age { {0, 1}, {1, 0} }, brightness = 90, streak = 0.04 }
 
