@@ -39,11 +39,11 @@ end
 
 -- What is finer than a cell is not in the air. Noise stands for it, carried along by the air, and eats at
 -- the cloud where that is thin. The base is not cut off at one height: air that has come from elsewhere
--- has another dew point, so the same noise lifts and lowers it, and the cloud thins out towards it.
+-- has another dew point, so the folds lift and lower it, and the cloud thins out towards it.
 local lumps = worley { frequency = 1.1, octaves = 4, persistence = 0.55, lacunarity = 2.2, seed = 4 }
               :tile():advect(air.velocity, { period = 1.2, mean = 0.48 })
 local folds = curl { frequency = 0.9, octaves = 4, persistence = 0.6, drift = {0, 0, -0.4}, speed = 0.4, seed = 9 }:tile()
-local wet   = smoothstep(base - 0.35, base + 0.75, position.z + 0.9 * (lumps - 0.6))
+local wet   = smoothstep(base - 0.25, base + 0.65, position.z + 0.25 * folds.z)
 local body  = clamp(air.density:warp(folds, folded) * 3, 0, 1) * wet
 local cloud = body * smoothstep(0, 0.2, body - eaten * (1 - lumps) * (1 - 0.6 * body))
 
