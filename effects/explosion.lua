@@ -51,9 +51,9 @@ local cover = clamp(smoke * 2.2, 0, 1)
 local crust = smoothstep(0, 0.15, cover - eaten * (1 - lumps) * (1 - 0.6 * cover))
 local soot  = cover * crust * (smoke + 0.15) * density * thin
 
--- A black body is white where it is very hot, as the first fire is all over. It is shown colder than it
--- is, so that it keeps its colour and its folds.
-local young = curve { {0, 0.62}, {0.4, 0.68}, {0.8, 0.88}, {1.1, 1}, shape = "ease_in_out" }
+-- A black body is white where it is very hot, as the first fire is all over. After a flash it is shown
+-- colder than it is, so that it keeps its colour and its folds.
+local young = curve { {0, 1.3}, {0.09, 0.95}, {0.2, 0.62}, {0.4, 0.68}, {0.8, 0.88}, {1.1, 1}, shape = "ease_in_out" }
 local fire  = palette { blackbody = {500, 4500}, physical = true, reference = 1500 }
 
 -- It strikes the ground: a ring of dust runs outwards, rises a little and thins out.
