@@ -3,21 +3,21 @@
 //
 //   engine FAR.lua NEAR.lua PICTURE.pfm [FRAMES]
 //
-// engine_vulkan.h has what every engine has; all that concerns roil is here.
+// engine_vulkan.h has what every engine has; all that concerns roil is here. Both are C17 and
+// C++20.
 #include "engine_vulkan.h"
 #include <roil_vulkan.h>
-#include <stdatomic.h>
 
 static roil *r;
 static roil_effect *effects[EFFECTS];
-static uint64_t now;       // of the timeline, once all that was submitted is done
-static atomic_long blocks; // of memory that roil has
+static uint64_t now; // of the timeline, once all that was submitted is done
+static long blocks;  // of memory that roil has, in all of its threads
 
 static void *allocate_for_roil(void *user, void *block, size_t size) {
     (void)user;
     void *given = size ? realloc(block, size) : NULL;
     if (!size) free(block);
-    if (!size || (given && !block)) atomic_fetch_add(&blocks, size ? 1 : -1);
+    if (!size || (given && !block)) __atomic_fetch_add(&blocks, size ? 1 : -1, __ATOMIC_RELAXED);
     return given;
 }
 
@@ -26,7 +26,7 @@ static void close_all(void) {
     for (int i = 0; i < EFFECTS; i++) roil_unload(effects[i]);
     roil_destroy(r);
     close_engine();
-    if (blocks) fprintf(stderr, "%ld blocks were not freed\n", (long)blocks);
+    if (blocks) fprintf(stderr, "%ld blocks were not freed\n", blocks);
     if (blocks) complaints++;
 }
 
@@ -43,8 +43,8 @@ static void stop(void) {
 // The device is the engine's own, made with what roil asks for besides.
 static void open_roil(void) {
     static roil_vulkan_needs needs;
-    if (!roil_set_allocator(&(roil_allocator){.allocate = allocate_for_roil}))
-        FAIL("%s", roil_error());
+    const roil_allocator allocator = {.allocate = allocate_for_roil};
+    if (!roil_set_allocator(&allocator)) FAIL("%s", roil_error());
     if (!roil_vulkan_find_needs(vkGetInstanceProcAddr, instance, physical, &needs))
         FAIL("%s", roil_error());
     float priority = 1;
@@ -67,7 +67,8 @@ static void open_roil(void) {
                           .extensions = needs.extensions,
                           .extension_count = needs.extension_count};
     open_engine(); // what is left of it
-    r = roil_create(&(roil_desc){.vulkan = &vulkan, .device_memory = getenv("ENGINE_MEMORY")});
+    const roil_desc desc = {.vulkan = &vulkan, .device_memory = getenv("ENGINE_MEMORY")};
+    r = roil_create(&desc);
     if (r) return;
     tell();
     stop();
@@ -103,7 +104,7 @@ static void place_camera(int frame, roil_view *view) {
     }
     view->view[14] = -away;
     view->view[15] = 1;
-    view->projection[0] = 1 / (half * WIDTH / HEIGHT);
+    view->projection[0] = 1 / (half * (float)WIDTH / (float)HEIGHT);
     view->projection[5] = -1 / half;
     view->projection[11] = -1;
     view->projection[14] = near;
@@ -128,7 +129,7 @@ static void draw_scene(const roil_view *view, uint64_t after) {
 // One effect into its two images, between the engine's own work, which goes on where it fails.
 static bool draw_effect(int i, int frame, const roil_view *view, uint64_t before, uint64_t after) {
     const roil_vulkan_semaphore wait = {timeline, before}, signal = {timeline, after};
-    roil_vulkan_frame f = {.waits = &wait, .wait_count = 1, .signals = &signal, .signal_count = 1};
+    roil_vulkan_frame f = {.waits = &wait, .signals = &signal, .wait_count = 1, .signal_count = 1};
     f.depth = (roil_vulkan_image){.image = depth.image,
                                   .format = deep,
                                   .width = WIDTH,

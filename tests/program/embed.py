@@ -9,6 +9,7 @@ from lib.pictures import packed_pixels
 from lib.program import BINARY, GROUND, PROGRAM, PUFF, SOURCE, VOLUME, Case, main
 
 ENGINE = os.path.join(SOURCE, "tests/embed/pictures.c")
+ENGINE_VULKAN = os.path.join(SOURCE, "tests/embed/engine.c")
 POLITE = os.path.join(SOURCE, "tests/embed/polite.c")
 POINTS = os.environ.get("ROIL_TEST_POINTS", "24")  # allocations that fail; of those while it draws a quarter
 WARNINGS = ["-Wall", "-Wextra", "-Werror", "-pedantic"]
@@ -63,13 +64,13 @@ class Embed(Case):
         for i, expected in enumerate(self.expected):
             self.assertEqual(packed_pixels(self.read(f"{i}.png")), expected)
 
-    def compile(self, out, language, *static, source=ENGINE):
-        compiler = {"c17": "cc", "c++17": "c++"}[language]
+    def compile(self, out, language, *static, source=ENGINE, besides=()):
+        compiler = {"c17": "cc", "c++17": "c++", "c++20": "c++"}[language]
         flags = run("pkg-config", *static, "--cflags", "--libs", "roil", env=self.environment).split()
         if static:
             flags = ["-l:libroil.a" if flag == "-lroil" else flag for flag in flags]
-        run(compiler, "-x", language.rstrip("17"), f"-std={language}", *WARNINGS, source, "-o", self.path(out),
-            "-x", "none", *flags, env=self.environment)
+        run(compiler, "-x", language.rstrip("0127"), f"-std={language}", *(besides or WARNINGS), source, "-o",
+            self.path(out), "-x", "none", *flags, *(("-lvulkan", "-lm") if besides else ()), env=self.environment)
         return self.path(out)
 
     def test_by_pkg_config(self):
@@ -88,17 +89,19 @@ class Embed(Case):
         run("cmake", "--build", build, env=self.environment)
         self.draws(f"{build}/engine_c", LD_LIBRARY_PATH="")
         self.draws(f"{build}/engine_cpp", LD_LIBRARY_PATH="")
-        self.has_effects(f"{build}/engine_vulkan")
+        self.have_effects(f"{build}/engine_vulkan", f"{build}/engine_vulkan_cpp",
+                          *(self.compile(f"by-{language}", language, source=ENGINE_VULKAN, besides=[f"-I{build}/embed"])
+                            for language in ("c17", "c++20")))
         self.draws(f"{build}/engine_archive", ROIL_HOME=f"{self.prefix}/share/roil", ROIL_READER=self.find("roil-reader"))
 
-    def has_effects(self, engine):
-        """An engine with a Vulkan device of its own draws what the one of this build does, which program/host.py looks at."""
+    def have_effects(self, *engines):
+        """Engines with a Vulkan device of their own draw what the one of this build does, which program/host.py looks at."""
         effects = [os.path.join(os.path.dirname(ENGINE), name) for name in ("far.lua", "near.lua")]
-        pictures = []
-        for program in engine, os.path.join(BINARY, "engine"):
-            run(program, *effects, self.path("engine.pfm"), "3", env={**os.environ, "LD_LIBRARY_PATH": ""})
-            pictures.append(self.read("engine.pfm"))
-        self.assertEqual(*pictures)
+        pictures = set()
+        for program in *engines, os.path.join(BINARY, "engine"):
+            run(program, *effects, self.path("engine.pfm"), "3", env={**os.environ, "LD_LIBRARY_PATH": self.lib})
+            pictures.add(self.read("engine.pfm"))
+        self.assertEqual(len(pictures), 1)
 
     def test_as_a_part_of_a_build(self):
         """It can be configured, and needs neither the window nor the options; building all again takes too long."""
