@@ -10,24 +10,11 @@
 // cells; it and the lacunarity are then rounded to whole numbers, so that every octave closes.
 #ifndef LIB_NOISE_GLSL
 #define LIB_NOISE_GLSL
+#include "lib/noise.h"
 
 const uvec4 NOISE_PRIMES = uvec4(0x8da6b343u, 0xd8163841u, 0xcb1ab31fu, 0x165667b1u);
-const uint NOISE_NEXT_SEED = 0x9e3779b9u;
-const int NOISE_MAX_OCTAVES = 12;
-
-const int NOISE_RIDGED = 1, NOISE_BILLOW = 2; // option "fractal", 0: fbm
 const int NOISE_FOUR = 1;                     // option "dimensions"
 const int NOISE_PAPER = 1;                    // option "mode"
-const int NOISE_F2 = 1, NOISE_F2_F1 = 2;      // option "distance", 0: f1
-
-// Full avalanche in two multiplications (Wellons, "Prospecting for hash functions", lowbias32).
-uint noise_hash(uint h) {
-    h ^= h >> 16u;
-    h *= 0x7feb352du;
-    h ^= h >> 15u;
-    h *= 0x846ca68bu;
-    return h ^ (h >> 16u);
-}
 
 uint noise_first_seed(float seed) {
     return noise_hash(uint(int(seed)) + NOISE_NEXT_SEED);
@@ -63,7 +50,6 @@ vec4 noise_fade(vec4 t) {
 // Perlin, "Improving noise", 2002: gradients are the edges of the cube. The factors bring the
 // extremes to 1.
 
-const float NOISE_PERLIN3 = 0.964921415, NOISE_PERLIN4 = 0.655895233;
 
 float noise_edge(uint h, vec3 d) { // one of 12 edges, four of them twice
     uint k = h >> 28u;
@@ -119,7 +105,6 @@ float noise_perlin4(vec4 q, uint seed, float period) {
 // axis, by whole steps of its own. In three dimensions that is the skew; in four it is near to it,
 // so a repeating noise takes it, with the lower simplices' radius^2 of 9/19 and a factor for that.
 
-const float NOISE_SIMPLEX3 = 76.8, NOISE_SIMPLEX4 = 62.7, NOISE_SIMPLEX4_CLOSED = 80.0;
 
 float noise_kernel(uint h, vec3 d) {
     float t = max(0.5 - dot(d, d), 0.0);
@@ -219,11 +204,6 @@ float noise_value4(vec4 q, uint seed, float period) {
 #include "lib/noise_worley.glsl"
 
 // ---- octaves ----------------------------------------------------------------------------------
-
-float noise_fold(float n, int fractal) { // -1..1 to 0..1
-    if (fractal == NOISE_RIDGED) return (1.0 - abs(n)) * (1.0 - abs(n));
-    return fractal == NOISE_BILLOW ? abs(n) : 0.5 + 0.5 * n;
-}
 
 struct noise_octave {
     vec4 q;

@@ -89,12 +89,8 @@ vec2 noise_worley4(vec4 q, uint seed, float period, float shift) {
     return best;
 }
 
-// High near feature points, for every choice of distance.
 float noise_cells(vec2 squared, float power, int distance) {
-    vec2 f = sqrt(squared);
-    float at = distance == NOISE_F2_F1 ? f.y - f.x : distance == NOISE_F2 ? f.y : f.x;
-    float v = pow(at, clamp(power, 0.01, 16.0));
-    return distance == NOISE_F2_F1 ? 2.0 * v - 1.0 : 1.0 - 2.0 * v;
+    return noise_cells(sqrt(squared.x), sqrt(squared.y), power, distance);
 }
 
 #endif

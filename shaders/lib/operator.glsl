@@ -1,43 +1,8 @@
-// Operators of fields that GLSL has not, or leaves undefined for some input: their results are
-// finite whatever the arguments. Twins in C: src/field/kinds_operator.c.
+// lib/operator.h for vectors, component by component.
 #ifndef LIB_OPERATOR_GLSL
 #define LIB_OPERATOR_GLSL
+#include "lib/operator.h"
 
-float operator_div(float a, float b) {
-    return b == 0.0 ? 0.0 : a / b;
-}
-
-float operator_pow(float a, float b) {
-    return a <= 0.0 ? (b == 0.0 ? 1.0 : 0.0) : pow(a, b);
-}
-
-float operator_sqrt(float a) {
-    return sqrt(max(a, 0.0));
-}
-
-float operator_exp(float a) {
-    return exp(min(a, 80.0));
-}
-
-float operator_step(float value, float edge) {
-    return value >= edge ? 1.0 : 0.0;
-}
-
-float operator_smoothstep(float value, float low, float high) {
-    if (low == high) return operator_step(value, low);
-    float t = clamp((value - low) / (high - low), 0.0, 1.0);
-    return t * t * (3.0 - 2.0 * t);
-}
-
-float operator_remap(float value, float in_min, float in_max, float out_min, float out_max) {
-    return out_min + operator_div(value - in_min, in_max - in_min) * (out_max - out_min);
-}
-
-float operator_atan(float y, float x) {
-    return x == 0.0 && y == 0.0 ? 0.0 : atan(y, x);
-}
-
-// The same for vectors, component by component.
 #define OPERATOR_1(NAME)                                                                           \
     vec3 NAME(vec3 a) { return vec3(NAME(a.x), NAME(a.y), NAME(a.z)); }                            \
     vec4 NAME(vec4 a) { return vec4(NAME(a.xyz), NAME(a.w)); }

@@ -1,32 +1,13 @@
-// Ranges of noise (lib/noise.glsl). Twins in C: src/field/noise_range.c.
-//
-// A base noise cannot change by more than its slope times the way. So an octave lies around its
-// value at the middle of the box, by the slope times half the diagonal (in its cells), and in -1..1;
-// where that says nothing it is not even evaluated.
-//
-// Slopes, by all gradients (values) that the corners can have: at a point d of the cell, along a
-// direction e, a lattice noise rises by sum_c g_c . (w_c e + (e . grad w_c) (d - c)); each corner's
-// gradient g_c, an edge of the cube, gives at most the sum of the greatest but one components of
-// that vector. What is left, to find the worst d and e, is a search (ascent from 60000 points);
-// its results are rounded up by 2 to 3 %. The kernels of simplex noise likewise. Distances to
-// feature points change by no more than the way.
+// Ranges of noise (lib/noise.glsl), by slopes (lib/noise.h). Twins in C: src/field/noise_range.c.
 #ifndef LIB_RANGE_NOISE_GLSL
 #define LIB_RANGE_NOISE_GLSL
 #include "lib/range_operator.glsl"
 #include "lib/noise.glsl"
 
-const vec2 RANGE_PERLIN = vec2(3.73, 3.80), RANGE_VALUE = vec2(3.86); // in 3 and 4 dimensions
-const vec2 RANGE_SIMPLEX = vec2(7.2, 7.0);
-const float RANGE_SIMPLEX4_CLOSED = 7.2;
-const vec2 RANGE_CURL = vec2(7.45, 7.6), RANGE_CURL_SLOPE = vec2(21.7, 23.9); // of a component
-
-range1 range_fold(range1 n, int fractal) {
-    range1 size = range_abs(n);
-    if (fractal == NOISE_RIDGED)
-        return range1((1.0 - size.high) * (1.0 - size.high), (1.0 - size.low) * (1.0 - size.low));
-    if (fractal == NOISE_BILLOW) return size;
-    return range1(0.5 + 0.5 * n.low, 0.5 + 0.5 * n.high);
-}
+// In 3 and 4 dimensions.
+const vec2 RANGE_PERLIN = vec2(RANGE_PERLIN3, RANGE_PERLIN4), RANGE_VALUES = vec2(RANGE_VALUE);
+const vec2 RANGE_SIMPLEX = vec2(RANGE_SIMPLEX3, RANGE_SIMPLEX4);
+const vec2 RANGE_CURL = vec2(RANGE_CURL3, RANGE_CURL4), RANGE_CURL_SLOPE = vec2(RANGE_CURL3_SLOPE, RANGE_CURL4_SLOPE);
 
 // Half the diagonal of the box in cells of the first octave, and what rounding makes of a point.
 float range_reach(range3 p, noise_octave o, float frequency) {
@@ -49,10 +30,6 @@ float range_reach(range3 p, noise_octave o, float frequency) {
     }                                                                                              \
     return range_mul(amplitude, range_wide(sum.low / total, sum.high / total))
 
-range1 range_around(float v, float r) {
-    return range1(clamp(v - r, -1.0, 1.0), clamp(v + r, -1.0, 1.0));
-}
-
 // GLSL evaluates only the operand that `?:` chooses.
 #define RANGE_NEAR(SLOPE, THREE, FOUR)                                                             \
     (reach * SLOPE[dimensions] >= 2.0 ? range1(-1.0, 1.0)                                          \
@@ -68,7 +45,7 @@ range1 range_perlin(range3 p, float frequency, float octaves, float persistence,
 range1 range_value(range3 p, float frequency, float octaves, float persistence, float lacunarity,
                    float seed, range1 amplitude, vec3 drift, float phase, float w, float period,
                    int fractal, int dimensions) {
-    RANGE_NOISE_SUM(RANGE_NEAR(RANGE_VALUE, noise_value3(o.q.xyz, o.seed, o.period),
+    RANGE_NOISE_SUM(RANGE_NEAR(RANGE_VALUES, noise_value3(o.q.xyz, o.seed, o.period),
                                noise_value4(o.q, o.seed, o.period)));
 }
 
@@ -81,17 +58,8 @@ range1 range_simplex(range3 p, float frequency, float octaves, float persistence
                                noise_simplex4(o.q, o.seed, o.period)));
 }
 
-// From squared distances to the nearest and the second nearest point.
 range1 range_cells(vec2 squared, float reach, float power, int distance) {
-    vec2 f = sqrt(squared), low = clamp(f - reach, 0.0, 1.0), high = clamp(f + reach, 0.0, 1.0);
-    range1 at = distance == NOISE_F2 ? range1(low.y, high.y) : range1(low.x, high.x);
-    if (distance == NOISE_F2_F1)
-        at = range1(max(max(low.y - high.x, f.y - f.x - 2.0 * reach), 0.0),
-                    min(high.y - low.x, f.y - f.x + 2.0 * reach));
-    power = clamp(power, 0.01, 16.0);
-    at = range1(max(pow(at.low, power) - 1e-4, 0.0), min(pow(at.high, power) + 1e-4, 1.0));
-    if (distance == NOISE_F2_F1) return range1(2.0 * at.low - 1.0, 2.0 * at.high - 1.0);
-    return range1(1.0 - 2.0 * at.high, 1.0 - 2.0 * at.low);
+    return range_cells(sqrt(squared.x), sqrt(squared.y), reach, power, distance);
 }
 
 range1 range_worley(range3 p, float frequency, float octaves, float persistence, float lacunarity,

@@ -5,12 +5,6 @@
 #include "lib/range_operator.glsl"
 #include "lib/shape.glsl"
 
-// Falls with the distance and, where it is above 0, with the falloff.
-range1 range_density(range1 distance, range1 falloff) {
-    return range1(shape_density(distance.high, falloff.high) * (1.0 - RANGE_ROUNDING),
-                  min(shape_density(distance.low, falloff.low) * (1.0 + RANGE_ROUNDING), 1.0));
-}
-
 range1 range_sphere(range3 p, range3 position, range1 radius, range1 falloff) {
     return range_density(range_sub(range_length(range_sub(p, position)), radius), falloff);
 }

@@ -2,10 +2,7 @@
 // Signed distances after Quilez, "3D SDFs". Twins in C: src/field/kinds_shape.c.
 #ifndef LIB_SHAPE_GLSL
 #define LIB_SHAPE_GLSL
-
-float shape_density(float distance, float falloff) {
-    return falloff > 0.0 ? clamp(-distance / falloff, 0.0, 1.0) : distance <= 0.0 ? 1.0 : 0.0;
-}
+#include "lib/operator.h"
 
 float shape_sphere(vec3 p, vec3 position, float radius, float falloff) {
     return shape_density(length(p - position) - radius, falloff);

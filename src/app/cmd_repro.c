@@ -97,7 +97,7 @@ static void add_sheet(job *j, const char *effect) {
 }
 
 // Runs the command; what it prints to the standard output is left out.
-static bool run(job *j) {
+static bool make_again(job *j) {
     for (size_t i = 0; i < j->made->setting_count; i++) {
         const roil_setting *s = &j->made->settings[i];
         arguments_add(&j->list, "--set");
@@ -248,7 +248,7 @@ static int repro(void *user) {
             add_sheet(j, effect);
         else
             add_render(j, effect);
-        status = run(j) && keep_output(j) ? compare(j) : app_fail_input();
+        status = make_again(j) && keep_output(j) ? compare(j) : app_fail_input();
     }
     remove_folder(j);
     roil_free_made(j->made);

@@ -54,15 +54,6 @@ kind_ranges ranges_perlin, ranges_simplex, ranges_value, ranges_worley, ranges_c
 kind_bounds bounds_mul, bounds_div, bounds_mix, bounds_min, bounds_dot, bounds_warp,
     bounds_transform, bounds_sphere, bounds_box, bounds_capsule, bounds_torus, bounds_disc;
 
-// Of the front of a burst at a distance for 1 kg, for its ranges (kinds_blast.c): what it has more
-// than the ambient pressure, as a part of it; how fast the air behind it goes then (m/s); its
-// impulse (Pa s); when it arrives (s). By blast_scale() distances and times are those for 1 kg.
-float blast_excess(float z);
-float blast_speed(float excess);
-float blast_impulse(float z);
-float blast_front(float z);
-float blast_scale(float charge);
-
 // What a node "advect" stands for, made of other kinds (advect.c). NULL with a message.
 field *field_advect(arena *memory, const field *node);
 // The same node with other arguments of the same widths. NULL with a message: nested too deeply.

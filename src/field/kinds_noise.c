@@ -21,7 +21,7 @@ static noise_desc describe(const float (*args)[4]) { // what all rows begin with
 
 static noise_desc describe_scalar(const field *node, const float (*args)[4]) {
     noise_desc desc = describe(args);
-    desc.fractal = (noise_fractal)node->options[0];
+    desc.fractal = node->options[0];
     desc.four = node->options[1] == 1;
     return desc;
 }
@@ -35,7 +35,7 @@ static noise_desc describe_simplex(const field *node, const float (*args)[4]) {
 static noise_desc describe_worley(const field *node, const float (*args)[4]) {
     noise_desc desc = describe_scalar(node, args);
     desc.power = args[10][0];
-    desc.distance = (noise_distance)node->options[2];
+    desc.distance = node->options[2];
     desc.paper = node->options[3] == 1;
     return desc;
 }

@@ -1,5 +1,5 @@
-// Operators: the twin of shaders/lib/operator.glsl and of GLSL's own functions. Arguments come
-// widened to four components, so that those of the result can be computed alike.
+// Operators, as shaders/lib/operator.h and GLSL's own functions have them. Arguments come widened
+// to four components, so that those of the result can be computed alike.
 #include "field/kinds.h"
 #include "shared.h"
 #include <math.h>
@@ -15,39 +15,25 @@ static const double degree = 3.14159265358979323846 / 180;
 #define B args[1][i]
 #define C args[2][i]
 
-static float divide(float a, float b) {
-    return b == 0 ? 0 : a / b;
-}
-
-static float power(float a, float b) {
-    return a <= 0 ? (b == 0 ? 1.0f : 0.0f) : powf(a, b);
-}
-
-static float smooth(float v, float low, float high) {
-    if (low == high) return v >= low ? 1 : 0;
-    float t = clampf((v - low) / (high - low), 0, 1);
-    return t * t * (3 - 2 * t);
-}
-
 EACH(add, A + B)
 EACH(sub, A - B)
 EACH(mul, A *B)
 EACH(negate, -A)
-EACH(div, divide(A, B))
+EACH(div, operator_div(A, B))
 EACH(min, fminf(A, B))
 EACH(max, fmaxf(A, B))
 EACH(mix, mixf(A, B, C))
 EACH(clamp, fminf(fmaxf(A, B), C))
-EACH(smoothstep, smooth(A, B, C))
-EACH(step, A >= B ? 1 : 0)
-EACH(pow, power(A, B))
+EACH(smoothstep, operator_smoothstep(A, B, C))
+EACH(step, operator_step(A, B))
+EACH(pow, operator_pow(A, B))
 EACH(abs, fabsf(A))
-EACH(sqrt, sqrtf(fmaxf(A, 0)))
-EACH(exp, expf(fminf(A, 80)))
+EACH(sqrt, operator_sqrt(A))
+EACH(exp, operator_exp(A))
 EACH(sin, sinf(A))
 EACH(floor, floorf(A))
 EACH(fract, A - floorf(A))
-EACH(remap, args[3][i] + divide(A - B, C - B) * (args[4][i] - args[3][i]))
+EACH(remap, operator_remap(A, B, C, args[3][i], args[4][i]))
 
 void eval_constant(const field_point *at, const float (*args)[4], float out[4]) {
     (void)args;
@@ -109,7 +95,7 @@ void eval_dot(const field_point *at, const float (*args)[4], float out[4]) {
 
 void eval_atan(const field_point *at, const float (*args)[4], float out[4]) {
     (void)at;
-    out[0] = args[0][0] == 0 && args[1][0] == 0 ? 0 : atan2f(args[0][0], args[1][0]);
+    out[0] = operator_atan(args[0][0], args[1][0]);
 }
 
 void eval_vec(const field_point *at, const float (*args)[4], float out[4]) {

@@ -3,17 +3,13 @@
 #include "field/kinds.h"
 #include <math.h>
 
-static float density(float distance, float falloff) {
-    return falloff > 0 ? clampf(-distance / falloff, 0, 1) : distance <= 0 ? 1 : 0;
-}
-
 static float length3(float x, float y, float z) {
     return sqrtf(x * x + y * y + z * z);
 }
 
 void eval_sphere(const field_point *at, const float (*a)[4], float out[4]) {
-    out[0] = density(length3(at->p.x - a[0][0], at->p.y - a[0][1], at->p.z - a[0][2]) - a[1][0],
-                     a[2][0]);
+    out[0] = shape_density(
+        length3(at->p.x - a[0][0], at->p.y - a[0][1], at->p.z - a[0][2]) - a[1][0], a[2][0]);
 }
 
 void eval_box(const field_point *at, const float (*a)[4], float out[4]) {
@@ -21,7 +17,7 @@ void eval_box(const field_point *at, const float (*a)[4], float out[4]) {
           y = fabsf(at->p.y - a[0][1]) - 0.5f * a[1][1];
     float z = fabsf(at->p.z - a[0][2]) - 0.5f * a[1][2];
     float outside = length3(fmaxf(x, 0), fmaxf(y, 0), fmaxf(z, 0));
-    out[0] = density(outside + fminf(fmaxf(x, fmaxf(y, z)), 0), a[2][0]);
+    out[0] = shape_density(outside + fminf(fmaxf(x, fmaxf(y, z)), 0), a[2][0]);
 }
 
 void eval_capsule(const field_point *at, const float (*a)[4], float out[4]) {
@@ -31,17 +27,17 @@ void eval_capsule(const field_point *at, const float (*a)[4], float out[4]) {
     float t = (r[0] * b[0] + r[1] * b[1] + r[2] * b[2]) / fmaxf(square, 1e-12f);
     t = clampf(t, 0, 1);
     float distance = length3(r[0] - b[0] * t, r[1] - b[1] * t, r[2] - b[2] * t);
-    out[0] = density(distance - a[2][0], a[3][0]);
+    out[0] = shape_density(distance - a[2][0], a[3][0]);
 }
 
 void eval_torus(const field_point *at, const float (*a)[4], float out[4]) {
     float x = at->p.x - a[0][0], y = at->p.y - a[0][1], z = at->p.z - a[0][2];
     float ring = length3(x, y, 0) - a[1][0];
-    out[0] = density(length3(ring, z, 0) - a[2][0], a[3][0]);
+    out[0] = shape_density(length3(ring, z, 0) - a[2][0], a[3][0]);
 }
 
 void eval_disc(const field_point *at, const float (*a)[4], float out[4]) {
-    out[0] = density(length3(at->p.x - a[0][0], at->p.y - a[1][0], 0) - a[2][0], a[3][0]);
+    out[0] = shape_density(length3(at->p.x - a[0][0], at->p.y - a[1][0], 0) - a[2][0], a[3][0]);
 }
 
 static box3 around(const float centre[4], float x, float y, float z) {

@@ -8,18 +8,6 @@
 enum { X, Y, Z, W };
 
 static const uint32_t primes[4] = {0x8da6b343u, 0xd8163841u, 0xcb1ab31fu, 0x165667b1u};
-static const uint32_t next_seed = 0x9e3779b9u;
-static const float perlin3_factor = 0.964921415f, perlin4_factor = 0.655895233f;
-static const float simplex3_factor = 76.8f, simplex4_factor = 62.7f;
-static const float simplex4_closed_factor = 80;
-
-static uint32_t hash(uint32_t h) {
-    h ^= h >> 16;
-    h *= 0x7feb352du;
-    h ^= h >> 15;
-    h *= 0x846ca68bu;
-    return h ^ (h >> 16);
-}
 
 static uint32_t whole(float v) { // as GLSL's uint(int(v)), defined for every float
     return v >= -2147483648.0f && v < 2147483648.0f ? (uint32_t)(int32_t)v : 0x80000000u;
@@ -68,7 +56,7 @@ static float edge4(uint32_t h, const float d[4]) {
 }
 
 static float value(uint32_t h) {
-    return (float)(hash(h) >> 8) * (1.0f / 8388608.0f) - 1;
+    return (float)(noise_hash(h) >> 8) * (1.0f / 8388608.0f) - 1;
 }
 
 // Interpolation over the corners of a cell, 8 or 16, whose values are in order of their bits.
@@ -92,11 +80,11 @@ static float cell_noise(noise_base base, const cell *c, uint32_t seed, bool four
         if (base == NOISE_VALUE)
             n[i] = value(h);
         else
-            n[i] = four ? edge4(hash(h), d) : edge3(hash(h), d);
+            n[i] = four ? edge4(noise_hash(h), d) : edge3(noise_hash(h), d);
     }
     float result = interpolate(n, c->fade, four);
     if (base == NOISE_VALUE) return result;
-    return result * (four ? perlin4_factor : perlin3_factor);
+    return result * (four ? NOISE_PERLIN4 : NOISE_PERLIN3);
 }
 
 static float lattice_noise(noise_base base, const float q[4], uint32_t seed, float period,
@@ -140,7 +128,7 @@ static float kernel(const simplex_grid *g, float at[4], const float d[4], uint32
         h += lattice(at[i], 0, i);
     }
     float t = fmaxf(g->reach - square, 0);
-    return t * t * t * t * (dimensions == 4 ? edge4(hash(h), d) : edge3(hash(h), d));
+    return t * t * t * t * (dimensions == 4 ? edge4(noise_hash(h), d) : edge3(noise_hash(h), d));
 }
 
 // From the corner at the base of the simplex to the opposite one, coordinates advance in falling
@@ -167,8 +155,8 @@ static float simplex_noise(const float q[4], uint32_t seed, float period, bool f
         }
         result += kernel(&g, corner, r, seed);
     }
-    if (!four) return result * simplex3_factor;
-    return result * (period > 0 ? simplex4_closed_factor : simplex4_factor);
+    if (!four) return result * NOISE_SIMPLEX3;
+    return result * (period > 0 ? NOISE_SIMPLEX4_CLOSED : NOISE_SIMPLEX4);
 }
 
 // ---- Worley -----------------------------------------------------------------------------------
@@ -205,7 +193,7 @@ static void feature(const float c[4], uint32_t seed, float period, float shift, 
     }
     uint32_t h = seed;
     for (int i = 0; i < (four ? 4 : 3); i++) h += lattice(c[i], period, i);
-    h = hash(h);
+    h = noise_hash(h);
     for (int i = 0; i < 4; i++)
         out[i] =
             four ? (float)(h >> (8 * i) & 255) / 256 : (float)(h >> 10 * (i % 3) & 1023) / 1024;
@@ -235,16 +223,9 @@ void noise_base_distances(const noise_desc *desc, const noise_octave *octave, fl
 }
 
 static float worley_noise(const noise_desc *desc, const noise_octave *octave) {
-    float f[2], power = clampf(desc->power, 0.01f, 16);
+    float f[2];
     noise_base_distances(desc, octave, f);
-    switch (desc->distance) {
-    case NOISE_F2:
-        return 1 - 2 * powf(f[1], power);
-    case NOISE_F2_F1:
-        return 2 * powf(f[1] - f[0], power) - 1;
-    default:
-        return 1 - 2 * powf(f[0], power);
-    }
+    return noise_cells(f[0], f[1], desc->power, desc->distance);
 }
 
 // ---- octaves ----------------------------------------------------------------------------------
@@ -259,7 +240,7 @@ noise_octave noise_begin(const noise_desc *desc, float3 p) {
         .period = closed ? floorf(desc->period + 0.5f) : 0,
         .weight = 1,
         .shift = desc->seed,
-        .seed = hash(whole(desc->seed) + next_seed),
+        .seed = noise_hash(whole(desc->seed) + NOISE_NEXT_SEED),
         .count = octaves >= 1 ? (int)fminf(octaves, NOISE_MAX_OCTAVES) : 1,
     };
 }
@@ -269,12 +250,7 @@ void noise_next(noise_octave *o, const noise_desc *desc) {
     o->period *= o->lacunarity;
     o->weight *= fmaxf(desc->persistence, 0);
     o->shift += 1;
-    o->seed += next_seed;
-}
-
-static float fold(float n, noise_fractal fractal) {
-    if (fractal == NOISE_RIDGED) return (1 - fabsf(n)) * (1 - fabsf(n));
-    return fractal == NOISE_BILLOW ? fabsf(n) : 0.5f + 0.5f * n;
+    o->seed += NOISE_NEXT_SEED;
 }
 
 float noise_base_value(noise_base base, const noise_desc *desc, const noise_octave *o) {
@@ -292,7 +268,8 @@ float noise_eval(noise_base base, const noise_desc *desc, float3 p) {
     noise_octave o = noise_begin(desc, p);
     float sum = 0, total = 0;
     for (int i = 0; i < o.count; i++) {
-        sum += o.weight * fold(clampf(noise_base_value(base, desc, &o), -1, 1), desc->fractal);
+        sum +=
+            o.weight * noise_fold(clampf(noise_base_value(base, desc, &o), -1, 1), desc->fractal);
         total += o.weight;
         noise_next(&o, desc);
     }
@@ -327,7 +304,7 @@ static void curl_corner(const cell *c, int corner, uint32_t seed, bool four, flo
         w[axis] = far ? c->fade[axis] : 1 - c->fade[axis];
         if (axis < 3) away[axis] = (far ? 30.0f : -30.0f) * d * d * (d * (d - 2) + 1);
     }
-    h = hash(h);
+    h = noise_hash(h);
     for (int i = 0; i < 3; i++) {
         if (four)
             gradient4(h >> (27 - 5 * i) & 31, g[i]);
@@ -385,7 +362,7 @@ static void paper_curl(const noise_desc *desc, float3 p, float out[3]) {
 
 void noise_base_curl(const noise_desc *desc, const noise_octave *o, float out[3]) {
     cell c = find_cell(o->q, o->period);
-    float curl[3] = {0}, factor = desc->four ? perlin4_factor : perlin3_factor;
+    float curl[3] = {0}, factor = desc->four ? NOISE_PERLIN4 : NOISE_PERLIN3;
     for (int k = 0; k < (desc->four ? 16 : 8); k++) curl_corner(&c, k, o->seed, desc->four, curl);
     for (int k = 0; k < 3; k++) out[k] = factor * curl[k];
 }

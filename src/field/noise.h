@@ -4,11 +4,7 @@
 #include "field/range.h"
 #include <stdbool.h>
 
-enum { NOISE_MAX_OCTAVES = 12 };
-
 typedef enum noise_base { NOISE_PERLIN, NOISE_SIMPLEX, NOISE_VALUE, NOISE_WORLEY } noise_base;
-typedef enum noise_fractal { NOISE_FBM, NOISE_RIDGED, NOISE_BILLOW } noise_fractal;
-typedef enum noise_distance { NOISE_F1, NOISE_F2, NOISE_F2_F1 } noise_distance;
 
 typedef struct noise_desc {
     float frequency, octaves, persistence, lacunarity, seed, amplitude;
@@ -16,14 +12,14 @@ typedef struct noise_desc {
     float period;
     float power; // worley
     float delta; // curl, paper's
-    noise_fractal fractal;
-    noise_distance distance; // worley
-    bool paper;              // worley: its hash; curl: its differences
-    bool four;               // dimensions
+    int fractal;
+    int distance; // worley
+    bool paper;   // worley: its hash; curl: its differences
+    bool four;    // dimensions
 } noise_desc;
 
 float noise_eval(noise_base base, const noise_desc *desc, float3 p); // 0..amplitude
 void noise_curl(const noise_desc *desc, float3 p, float out[3]);     // amplitude is the amount
 // In the box `at`, of amplitude 1.
-interval noise_range(noise_base base, const noise_desc *desc, const intervals *at);
+range1 noise_range(noise_base base, const noise_desc *desc, const intervals *at);
 intervals noise_curl_ranges(const noise_desc *desc, const intervals *at);

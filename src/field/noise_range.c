@@ -2,55 +2,30 @@
 #include "field/noise_parts.h"
 #include <math.h>
 
-// Greatest slopes of the bases, in 3 and 4 dimensions; shaders/lib/range_noise.glsl has the
-// reasons.
-static const float perlin_slope[2] = {3.73f, 3.80f}, value_slope[2] = {3.86f, 3.86f};
-static const float simplex_slope[2] = {7.2f, 7.0f}, simplex4_closed_slope = 7.2f;
-static const float most_curl[2] = {7.45f, 7.6f}, curl_slope[2] = {21.7f, 23.9f};
+// Greatest slopes of the bases, in 3 and 4 dimensions.
+static const float perlin_slope[2] = {RANGE_PERLIN3, RANGE_PERLIN4};
+static const float simplex_slope[2] = {RANGE_SIMPLEX3, RANGE_SIMPLEX4};
+static const float most_curl[2] = {RANGE_CURL3, RANGE_CURL4};
+static const float curl_slope[2] = {RANGE_CURL3_SLOPE, RANGE_CURL4_SLOPE};
 
 static float slope_of(noise_base base, const noise_desc *desc) {
-    if (base == NOISE_VALUE) return value_slope[desc->four];
+    if (base == NOISE_VALUE) return RANGE_VALUE;
     if (base == NOISE_PERLIN) return perlin_slope[desc->four];
-    return desc->four && desc->period >= 0.5f ? simplex4_closed_slope : simplex_slope[desc->four];
+    return desc->four && desc->period >= 0.5f ? RANGE_SIMPLEX4_CLOSED : simplex_slope[desc->four];
 }
 
-static interval around(float v, float reach) {
-    return (interval){clampf(v - reach, -1, 1), clampf(v + reach, -1, 1)};
-}
-
-static interval cells_range(const noise_desc *desc, const noise_octave *o, float reach) {
-    const float inexact = 1e-4f;
-    float f[2], low[2], high[2], power = clampf(desc->power, 0.01f, 16);
+static range1 cells_range(const noise_desc *desc, const noise_octave *o, float reach) {
+    float f[2];
     noise_base_distances(desc, o, f);
-    for (int i = 0; i < 2; i++) {
-        low[i] = clampf(f[i] - reach, 0, 1);
-        high[i] = clampf(f[i] + reach, 0, 1);
-    }
-    int which = desc->distance == NOISE_F2;
-    float from = low[which], to = high[which];
-    if (desc->distance == NOISE_F2_F1) {
-        from = fmaxf(fmaxf(low[1] - high[0], f[1] - f[0] - 2 * reach), 0);
-        to = fminf(high[1] - low[0], f[1] - f[0] + 2 * reach);
-    }
-    from = fmaxf(powf(from, power) - inexact, 0);
-    to = fminf(powf(to, power) + inexact, 1);
-    if (desc->distance == NOISE_F2_F1) return (interval){2 * from - 1, 2 * to - 1};
-    return (interval){1 - 2 * to, 1 - 2 * from};
+    return range_cells(f[0], f[1], reach, desc->power, desc->distance);
 }
 
-static interval base_range(noise_base base, const noise_desc *desc, const noise_octave *o,
-                           float reach) {
+static range1 base_range(noise_base base, const noise_desc *desc, const noise_octave *o,
+                         float reach) {
     float slope = base == NOISE_WORLEY ? 1 : slope_of(base, desc);
-    if (reach * slope >= (base == NOISE_WORLEY ? 1 : 2)) return (interval){-1, 1};
+    if (reach * slope >= (base == NOISE_WORLEY ? 1 : 2)) return range1(-1, 1);
     if (base == NOISE_WORLEY) return cells_range(desc, o, reach);
-    return around(noise_base_value(base, desc, o), reach * slope);
-}
-
-static interval fold_range(interval n, noise_fractal fractal) {
-    float near = fmaxf(fmaxf(n.low, -n.high), 0), far = fmaxf(n.high, -n.low);
-    if (fractal == NOISE_RIDGED) return (interval){(1 - far) * (1 - far), (1 - near) * (1 - near)};
-    if (fractal == NOISE_BILLOW) return (interval){near, far};
-    return (interval){0.5f + 0.5f * n.low, 0.5f + 0.5f * n.high};
+    return range_around(noise_base_value(base, desc, o), reach * slope);
 }
 
 static noise_octave begin_range(const noise_desc *desc, const intervals *at, float *reach) {
@@ -66,12 +41,12 @@ static noise_octave begin_range(const noise_desc *desc, const intervals *at, flo
     return o;
 }
 
-interval noise_range(noise_base base, const noise_desc *desc, const intervals *at) {
+range1 noise_range(noise_base base, const noise_desc *desc, const intervals *at) {
     float reach, total = 0;
     noise_octave o = begin_range(desc, at, &reach);
-    interval sum = {0, 0};
+    range1 sum = {0, 0};
     for (int i = 0; i < o.count; i++) {
-        interval n = fold_range(base_range(base, desc, &o, reach), desc->fractal);
+        range1 n = range_fold(base_range(base, desc, &o, reach), desc->fractal);
         sum.low += o.weight * n.low;
         sum.high += o.weight * n.high;
         total += o.weight;

@@ -1,62 +1,9 @@
-// Interval arithmetic, and its walk over an expression. See shaders/lib/range.glsl.
+// The walk over an expression for its ranges.
 #include "field/range.h"
 #include "base/map.h"
 #include "base/memory.h"
 #include "field/kinds.h"
 #include <math.h>
-
-static const float most = 1e15f, end = 1e30f, rounding = 1e-6f;
-
-interval range_make(float low, float high) {
-    return (interval){low >= -most ? fminf(low, most) : -end,
-                      high <= most ? fmaxf(high, -most) : end};
-}
-
-interval range_wide(float low, float high) {
-    return range_make(low - rounding * fabsf(low), high + rounding * fabsf(high));
-}
-
-interval range_number(float v) {
-    return range_make(v, v);
-}
-
-interval range_unknown(void) {
-    return (interval){-end, end};
-}
-
-interval range_union(interval a, interval b) {
-    return (interval){fminf(a.low, b.low), fmaxf(a.high, b.high)};
-}
-
-interval range_add(interval a, interval b) {
-    return range_make(a.low + b.low, a.high + b.high);
-}
-
-interval range_sub(interval a, interval b) {
-    return range_make(a.low - b.high, a.high - b.low);
-}
-
-static float times(float a, float b) {
-    if (a == 0 || b == 0) return 0;
-    return fmaxf(fabsf(a), fabsf(b)) > most ? ((a < 0) == (b < 0) ? end : -end) : a * b;
-}
-
-interval range_mul(interval a, interval b) {
-    float ll = times(a.low, b.low), lh = times(a.low, b.high);
-    float hl = times(a.high, b.low), hh = times(a.high, b.high);
-    return range_wide(fminf(fminf(ll, lh), fminf(hl, hh)), fmaxf(fmaxf(ll, lh), fmaxf(hl, hh)));
-}
-
-interval range_mix(interval a, interval b, interval t) {
-    interval rest = range_sub((interval){1, 1}, t);
-    interval from = range_add(range_mul(a, (interval){rest.high, rest.high}),
-                              range_mul(b, (interval){t.low, t.low}));
-    interval to = range_add(range_mul(a, (interval){rest.low, rest.low}),
-                            range_mul(b, (interval){t.high, t.high}));
-    return range_union(from, to);
-}
-
-// ---- expressions ------------------------------------------------------------------------------
 
 typedef struct walk {
     const field_context *context;

@@ -46,8 +46,8 @@ def room_of(path):
 def judge_own(path, target):
     """A quoted include; `path` and `target` are relative to src."""
     mine = layer_of(path)
-    if target == "shared.h":
-        return None  # shaders/shared.h: constants that C and GLSL share
+    if target == "shared.h" or target.startswith("lib/"):
+        return None  # of shaders/: constants and functions that C and GLSL share
     theirs = layer_of(target)
     if "/" not in target and target not in PUBLIC or theirs not in LEVEL:
         return f'"{target}": write "layer/file.h", relative to src'

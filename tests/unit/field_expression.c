@@ -216,6 +216,43 @@ static void operators_are_defined_for_every_number(void **state) {
     assert_true(value_at(make("length", vector(2, 3, 6)), 0, (float3){0}) == 7);
 }
 
+#define GIVES(VALUE, ...)                                                                          \
+    assert_float_equal(value_at(make(__VA_ARGS__), 0, (float3){0}), VALUE, 1e-6f)
+
+// The device and the host have these of one text, so that neither can find a fault of the other.
+static void operators_have_their_values(void **state) {
+    (void)state;
+    GIVES(-3.5f, "div", number(7), number(-2));
+    GIVES(8, "pow", number(2), number(3));
+    GIVES(0.5f, "pow", number(4), number(-0.5f));
+    GIVES(0, "pow", number(-2), number(3));
+    GIVES(1, "pow", number(0), number(0));
+    GIVES(1, "step", number(1), number(1));
+    GIVES(0, "step", number(0.9f), number(1));
+    GIVES(0.5f, "smoothstep", number(3), number(1), number(5));
+    GIVES(1, "smoothstep", number(9), number(1), number(5));
+    GIVES(0, "smoothstep", number(0), number(1), number(5));
+    GIVES(0.84375f, "smoothstep", number(2), number(5), number(1));
+    GIVES(1, "smoothstep", number(2), number(2), number(2));
+    GIVES(0, "smoothstep", number(1), number(2), number(2));
+    GIVES(5, "clamp", number(7), number(1), number(5));
+    GIVES(1, "clamp", number(-7), number(1), number(5));
+    GIVES(3, "mix", number(2), number(6), number(0.25f));
+    GIVES(2, "min", number(2), number(6));
+    GIVES(6, "max", number(2), number(6));
+    GIVES(2.3561945f, "atan", number(1), number(-1));
+    GIVES(0, "atan", number(0), number(0));
+    GIVES(3, "sqrt", number(9));
+    GIVES(7.3890561f, "exp", number(2));
+    GIVES(3, "abs", number(-3));
+    GIVES(-2, "floor", number(-1.25f));
+    GIVES(0.75f, "fract", number(-1.25f));
+    GIVES(-3, "negate", number(3));
+    GIVES(0.84147098f, "sin", number(1));
+    field *soft = row("sphere", SET("radius", number(2)), SET("falloff", number(4)));
+    assert_float_equal(value_at(soft, 0, (float3){0.5f, 0, 0}), 0.375f, 1e-6f);
+}
+
 static void warps_and_transforms_move_the_point(void **state) {
     (void)state;
     field *x = need_field(field_swizzle(build_memory(), make("position", NULL), "x"));
@@ -422,6 +459,7 @@ int main(void) {
         cmocka_unit_test(functions_of_time_are_called_and_may_fail),
         cmocka_unit_test(shapes_have_their_extent_and_falloff),
         cmocka_unit_test(operators_are_defined_for_every_number),
+        cmocka_unit_test(operators_have_their_values),
         cmocka_unit_test(warps_and_transforms_move_the_point),
         cmocka_unit_test(large_graphs_are_evaluated_once),
         cmocka_unit_test(instances_have_the_values_of_their_places_and_states),

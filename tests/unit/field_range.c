@@ -85,7 +85,7 @@ static void noise_may_run_backwards(void **state) {
     }
 }
 
-static interval range_of(const field *node, box3 box) {
+static range1 range_of(const field *node, box3 box) {
     intervals in;
     if (!field_ranges(node, &moving, box, &in)) fail_msg("%s", err_get());
     return in.c[0];
@@ -98,7 +98,7 @@ static void nothing_stays_nothing(void **state) {
     field *ball = row("sphere", SET("radius", number(1)));
     field *unknown =
         need_field(field_user(build_memory(), &(field_glsl){"a.glsl", "f", 1, 0}, NULL));
-    interval all = range_of(make("mul", ball, unknown), unit_box);
+    range1 all = range_of(make("mul", ball, unknown), unit_box);
     assert_true(all.low == 0 && all.high == 0);
     all = range_of(make("mul", make("add", ball, number(1)), unknown), unit_box);
     assert_true(all.low <= -1e30f && all.high >= 1e30f);
@@ -114,7 +114,7 @@ static void a_warp_to_a_place_is_not_widened_by_the_way(void **state) {
     (void)state;
     field *p = make("position", NULL), *z = need_field(field_swizzle(build_memory(), p, "z"));
     field *there = make("warp", z, make("sub", make("mul", p, number(2)), p));
-    interval all = range_of(there, unit_box);
+    range1 all = range_of(there, unit_box);
     assert_true(fabsf(all.low - 6) < 1e-4f && fabsf(all.high - 8) < 1e-4f);
 }
 
@@ -125,7 +125,7 @@ static void grids_are_unknown_inside_and_nothing_outside(void **state) {
                        .channel_count = 1,
                        .state = {.active = {{0, 0, 0}, {4, 4, 2}}}};
     field *d = field_grid_channel(build_memory(), &grid, 0, 1);
-    interval all = range_of(d, unit_box);
+    range1 all = range_of(d, unit_box);
     assert_true(all.low == 0 && all.high == 0);
     all = range_of(d, (box3){{1, 1, 1}, {2, 2, 2}});
     assert_true(all.high >= 1e30f);
