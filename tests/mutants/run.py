@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Makes the solvers' deliberate faults (*.txt beside this) one by one, and says which the test that
 is said to catch them does not: run.py [--build FOLDER] [NAME...]. All take about ten minutes on two
-cores. FOLDER (default: build) holds the programs of the tests; those of faults in C are built anew,
-in FOLDER/mutants, where a copy of the source is changed. The exit status is 0 when all are caught."""
+cores. FOLDER (default: build) holds the programs of the tests; those of faults that C compiles are
+built anew, in FOLDER/mutants, where a copy of the source is changed. The exit status is 0 when all are caught."""
 import argparse
 import os
 import re
@@ -16,7 +16,7 @@ TOP = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", ".."))
 sys.path.insert(0, os.path.join(TOP, "tests", "rules"))
 from lib import mutants
 
-COPIED = ("CMakeLists.txt", "src", "shaders", "scripts", "effects", "tests")
+COPIED = ("CMakeLists.txt", "LICENSE", "README.md", "src", "shaders", "scripts", "effects", "tests")
 SECONDS = 300
 
 
@@ -56,7 +56,7 @@ class Workshop:
 
     def run(self, mutant, changed):
         """What became of its test: passed, failed, or a word for what else happened."""
-        folder = self.make(mutant.program) if mutant.path.endswith(".c") else self.build
+        folder = self.make(mutant.program) if mutant.path.endswith((".c", ".h")) else self.build
         environment = dict(os.environ, ROIL_LONG_TESTS="1", ROIL_SOURCE_DIR=self.source, ROIL_BINARY_DIR=folder,
                            ROIL_TEST_DATA=os.path.join(self.source, "tests"), ROIL_TEST=mutant.test,
                            ROIL_CACHE_DIR=os.path.join(self.build, "mutants", "cache"))
@@ -103,7 +103,7 @@ def main():
     if offences:
         sys.exit("\n".join(offences))
     chosen = [m for m in listed if not args.names or m.name in args.names]
-    missing = {m.program for m in chosen if not m.path.endswith(".c")
+    missing = {m.program for m in chosen if not m.path.endswith((".c", ".h"))
                and not os.path.exists(os.path.join(args.build, m.program))}
     if missing:
         sys.exit(f"not in {args.build}, build first: {' '.join(sorted(missing))}")
@@ -111,7 +111,7 @@ def main():
     as_it_is, counts = {}, {"caught": 0, "SURVIVED": 0, "FAULTY": 0}
     for m in chosen:
         begin = time.monotonic()
-        key = m.program, m.test, m.path.endswith(".c")
+        key = m.program, m.test, m.path.endswith((".c", ".h"))
         if key not in as_it_is:
             as_it_is[key] = shop.run(m, False)
         seen = shop.try_out(m) if as_it_is[key] == "passed" else f"unchanged: {as_it_is[key]}"
