@@ -11,5 +11,9 @@ file=$2
 set -- $line
 effect=$2 frame=$3
 shift 3
-exec "$ROIL_BINARY_DIR/roil" render "$ROIL_SOURCE_DIR/effects/$effect" --frames "$frame" \
-    --size 240x135 -o "$file" "$@"
+case $file in
+/*) ;;
+*) file=$PWD/$file ;;
+esac
+cd "$ROIL_SOURCE_DIR" # the picture says what it was made of: no path of this machine
+exec "$ROIL_BINARY_DIR/roil" render "effects/$effect" --frames "$frame" --size 240x135 -o "$file" "$@"

@@ -56,6 +56,7 @@ BROKEN = [  # rule, file, text
     ("shell", "scripts/build", "#!/bin/sh\ncd $1\n"),
     ("words", "scripts/build", "# FIX" "ME\n"),
     ("words", "effects/explosion.lua", "-- XX" "X\n"),
+    ("words", "tests/golden/fire.png", "tEXtroil:effect\0/home/me/fire.lua"),
     ("documents", "README.md", "a " * 60 + "\n"),
     ("documents", "src/README.md", "[error](base/errors.h)\n"),
     ("documents", "README.md", "# One house\n[here](#two-houses)\n"),

@@ -24,6 +24,11 @@ def files(top, folder, endings=None):
     return sorted(found)
 
 
+def content(top, path):
+    with open(os.path.join(top, path), "rb") as f:
+        return f.read()
+
+
 def lines(top, path):
     with open(os.path.join(top, path), encoding="utf-8", errors="replace") as f:
         return f.read().splitlines()
