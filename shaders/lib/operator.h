@@ -40,9 +40,4 @@ SHARED float operator_atan(float y, float x) {
     return x == 0.0f && y == 0.0f ? 0.0f : atan(y, x);
 }
 
-// Of a solid, from the signed distance to its surface: 0 outside, rising to 1 at the depth `falloff`.
-SHARED float shape_density(float distance, float falloff) {
-    return falloff > 0.0f ? clamp(-distance / falloff, 0.0f, 1.0f) : distance <= 0.0f ? 1.0f : 0.0f;
-}
-
 #endif

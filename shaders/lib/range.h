@@ -175,10 +175,4 @@ SHARED range1 range_fract(range1 a) {
     return range1(fract(a.low), fract(a.high));
 }
 
-// Of a solid: falls with the distance and, where it is above 0, with the falloff.
-SHARED range1 range_density(range1 distance, range1 falloff) {
-    return range1(shape_density(distance.high, falloff.high) * (1.0f - RANGE_ROUNDING),
-                  min(shape_density(distance.low, falloff.low) * (1.0f + RANGE_ROUNDING), 1.0f));
-}
-
 #endif

@@ -1,6 +1,7 @@
-// Ranges of lib/blast.glsl, by those of lib/blast.h.
+// Ranges of lib/blast.glsl, by those of lib/range_blast.h.
 #ifndef LIB_RANGE_BLAST_GLSL
 #define LIB_RANGE_BLAST_GLSL
+#include "lib/range_blast.h"
 #include "lib/range_operator.glsl"
 #include "lib/blast.glsl"
 

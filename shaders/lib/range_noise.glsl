@@ -1,6 +1,7 @@
-// Ranges of noise (lib/noise.glsl), by slopes (lib/noise.h). Twins in C: src/field/noise_range.c.
+// Ranges of noise (lib/noise.glsl), by slopes (lib/range_noise.h). Twins in C: src/field/noise_range.c.
 #ifndef LIB_RANGE_NOISE_GLSL
 #define LIB_RANGE_NOISE_GLSL
+#include "lib/range_noise.h"
 #include "lib/range_operator.glsl"
 #include "lib/noise.glsl"
 

@@ -3,6 +3,7 @@
 #ifndef LIB_RANGE_SHAPE_GLSL
 #define LIB_RANGE_SHAPE_GLSL
 #include "lib/range_operator.glsl"
+#include "lib/range_shape.h"
 #include "lib/shape.glsl"
 
 range1 range_sphere(range3 p, range3 position, range1 radius, range1 falloff) {

@@ -2,7 +2,7 @@
 // Signed distances after Quilez, "3D SDFs". Twins in C: src/field/kinds_shape.c.
 #ifndef LIB_SHAPE_GLSL
 #define LIB_SHAPE_GLSL
-#include "lib/operator.h"
+#include "lib/shape.h"
 
 float shape_sphere(vec3 p, vec3 position, float radius, float falloff) {
     return shape_density(length(p - position) - radius, falloff);

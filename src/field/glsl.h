@@ -1,5 +1,5 @@
 // What a field is on the GPU and on the host, where both can be one text: the functions of single
-// numbers in shaders/lib/{operator,range,blast,noise}.h, which are GLSL, compiled as C.
+// numbers in shaders/lib/*.h, which are GLSL, compiled as C.
 #pragma once
 #include "base/maths.h"
 #include <math.h>
@@ -23,8 +23,9 @@ typedef struct range1 range1; // of one component
 #define pow(a, b) powf(a, b)
 #define sin(a) sinf(a)
 #define sqrt(a) sqrtf(a)
-#include "lib/blast.h"
-#include "lib/noise.h"
+#include "lib/range_blast.h"
+#include "lib/range_noise.h"
+#include "lib/range_shape.h"
 #undef SHARED
 #undef abs
 #undef atan
