@@ -31,7 +31,7 @@ static bool make_canvas(roil *r, view *v, uint32_t width, uint32_t height) {
     const gpu_image *below = v->below, *canvas = v->canvas;
     bool done = make_image(r, &v->below, "window, below", width, height, 0) &&
                 make_image(r, &v->canvas, "window", width, height, GPU_USE_TARGET);
-    if (v->below != below) v->picture = NULL;
+    if (v->below != below) v->holds = false;
     if (v->below != below || v->canvas != canvas) redraw_forget(&v->redraw);
     return done;
 }
@@ -54,7 +54,7 @@ static void fit_picture(const gpu_image *picture, const float space[4], int32_t 
 
 typedef struct shown { // stills, or the effect's own picture; NULL: none
     gpu_image *picture, *other;
-    bool kept; // they never change, so what was made of them holds
+    bool kept; // what was made of them holds: they never change, or there is none
 } shown;
 
 static bool compose(roil *r, view *v, const roil_picture *p, const shown *what) {
@@ -81,14 +81,16 @@ static compose_block block_of(const roil_picture *p, const shown *what) {
 static bool compose_picture(roil *r, view *v, const roil_picture *p, const shown *what) {
     compose_block block = block_of(p, what);
     bool moved = memcmp(&block, &v->composed, sizeof block) != 0;
-    if (what->kept && v->picture == what->picture && v->other == what->other && !moved) return true;
+    bool same = v->holds && v->picture == what->picture && v->other == what->other;
+    if (what->kept && same && !moved) return true;
     v->composed = block;
     v->made.ground += moved;
     v->made.pictures++;
     memcpy(v->made.places[0], block.place, sizeof block.place);
     memcpy(v->made.places[1], block.beside, sizeof block.beside);
     bool done = compose(r, v, p, what);
-    v->picture = what->kept && done ? what->picture : NULL;
+    v->holds = what->kept && done;
+    v->picture = what->picture;
     v->other = what->other;
     return done;
 }
@@ -187,7 +189,8 @@ static gpu_image *image_of(roil *r, roil_still *s) {
 // The effect's own picture, which on another device is waited for.
 static bool find_own(roil *r, view *v, roil_effect *e, shown *out) {
     out->picture = view_picture(e);
-    if (!out->picture || !roil_shows_apart(r)) return true;
+    out->kept = !out->picture;
+    if (out->kept || !roil_shows_apart(r)) return true;
     roil_still_destroy(r, v->own);
     v->own = roil_still_create(e);
     if (!v->own || !view_wait(r, v->own)) return false;
@@ -200,7 +203,7 @@ static bool find_shown(roil *r, view *v, const roil_picture *p, shown *out) {
     if (!p->still && !p->beside) return find_own(r, v, p->effect, out);
     out->picture = image_of(r, p->still);
     out->other = image_of(r, p->beside);
-    out->kept = out->picture != NULL;
+    out->kept = true;
     return !gpu_is_lost(r->device);
 }
 

@@ -148,7 +148,7 @@ roil_still *roil_still_share(roil_still *s) {
 void roil_still_destroy(roil *r, roil_still *s) {
     if (!s || s->shared-- > 0) return;
     view *v = r->view;
-    if (v && (v->picture == s->image || v->other == s->image)) v->picture = NULL;
+    if (v && (v->picture == s->image || v->other == s->image)) v->holds = false;
     gpu_image_destroy(r->shown, s->image);
     gpu_buffer_destroy(r->device, s->readback);
     mem_free(s);

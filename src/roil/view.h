@@ -50,7 +50,8 @@ struct view {
     gpu_image *canvas;                    // the picture shown last
     gpu_image *below;                     // what lies below the interface in it, ...
     compose_block composed;               // ... made of this ...
-    const gpu_image *picture, *other;     // ... and of these; NULL: of what is not known
+    const gpu_image *picture, *other;     // ... and of these; NULL: of none
+    bool holds;                           // these have not changed since
     redraw_below made;                    // counts how often it was made
     redraw redraw;                        // what the canvas shows
     roil_still *own;                      // of the effect that roil_show was given

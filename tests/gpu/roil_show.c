@@ -1,6 +1,7 @@
 // A window's picture without a window: the effect in its place, and triangles over it.
 #include "media/png.h"
 #include "pass/blue_noise.h"
+#include "roil/view.h"
 #include "roil_test.h"
 
 // Colours over the whole range of display light, alpha below one, its first column dark.
@@ -176,6 +177,21 @@ static void an_effect_without_a_frame_shows_nothing(void **state) {
     expect_place(pixels, 32, 16, 0, 0, 32, 16);
     mem_free(pixels);
     roil_unload(e);
+}
+
+// While an effect loads there is no picture, and the cores are busy.
+static void nothing_is_drawn_once(void **state) {
+    roil_picture none = {.width = 96, .height = 96, .view = {0, 0, 96, 96}};
+    ok(roil_show(*state, &none));
+    const view *v = view_get(*state);
+    const uint64_t made = v->made.pictures;
+    ok(roil_show(*state, &none));
+    assert_int_equal(v->made.pictures, made);
+    assert_int_equal(v->redraw.area_count, 0);
+    none.view[2] = 48; // it has no picture there either
+    none.background[0] = 0.5f;
+    ok(roil_show(*state, &none));
+    assert_int_equal(v->redraw.area_count, 1);
 }
 
 static void the_canvas_follows_the_window(void **state) {
@@ -428,6 +444,7 @@ int main(void) {
         cmocka_unit_test(dark_skies_have_no_bands),
         cmocka_unit_test(the_picture_keeps_its_aspect_in_the_middle),
         cmocka_unit_test(an_effect_without_a_frame_shows_nothing),
+        cmocka_unit_test(nothing_is_drawn_once),
         cmocka_unit_test(the_canvas_follows_the_window),
         cmocka_unit_test(triangles_cover_their_pixels_in_order),
         cmocka_unit_test(colours_are_mixed_as_they_are_encoded),
