@@ -1,5 +1,5 @@
--- Coloured smoke in a white studio: five nozzles puff in turn, into each other's way. The air carries two
--- things, smoke and a dye, and a palette makes a colour of their ratio: it is 0 in the first nozzle's
+-- Coloured smoke in a white studio: five nozzles puff at each other, and wind stirs it. The air carries
+-- two things, smoke and a dye, and a palette makes a colour of their ratio: it is 0 in the first nozzle's
 -- smoke, 1 in the last one's, and between them where they have mixed.
 --
 --   roil render effects/dye.lua --frames 84 -o dye.png
@@ -21,8 +21,8 @@ local function cells(count) return math.max(16, 8 * math.floor(count * detail:ge
 local air = lbm {
   size = {cells(96), cells(96), cells(96)}, voxel_size = 4.2 / cells(96),
   boundary = { bottom = "wall", sides = "open", top = "open" },
-  buoyancy_heat = 1.6, cooling_rate = 0.25, dissolve_rate = 0.06, speed = 4,
-  force = curl { frequency = 0.9, octaves = 2, speed = 0.8, seed = 5 } * 1.2,
+  buoyancy_heat = 0.9, cooling_rate = 0.25, dissolve_rate = 0.06, speed = 4,
+  force = curl { frequency = 0.9, octaves = 3, speed = 0.8, seed = 5 } * 3,
 }
 
 -- Where a source is, the air has what is said here, also nothing at all: between puffs a nozzle is still.
@@ -32,11 +32,11 @@ for i = 1, nozzles do
   local angle = 2 * math.pi * (i - 0.75) / nozzles
   local x, y  = math.cos(angle), math.sin(angle)
   local ink   = (i - 1) / (nozzles - 1)
-  local puff  = smoothstep(-0.7, 0.1, sin(3.6 * time + 2 * math.pi * ((2 * i) % nozzles) / nozzles))
+  local puff  = smoothstep(-1, -0.2, sin(3.6 * time + 2 * math.pi * ((2 * i) % nozzles) / nozzles))
   air:source {
-    shape = sphere { position = {1.25 * x, 1.25 * y, 0.3}, radius = 0.18 },
+    shape = sphere { position = {x, y, 0.3}, radius = 0.18 },
     density = puff, dye = ink * puff, temperature = puff,
-    velocity = (vec(-0.5 * x - swirl * y, -0.5 * y + swirl * x, 1) + 0.3 * flutter) * speed * puff,
+    velocity = (vec(-0.75 * x - swirl * y, -0.75 * y + swirl * x, 1) + 0.3 * flutter) * speed * puff,
   }
 end
 
