@@ -125,7 +125,7 @@ static void choose_volumes(gpu_profile *p, bool software, bool checked) {
 static void choose_points(gpu_profile *p, bool software) {
     // 16384 splats in 480x270 on lavapipe, read by each pixel's thread from the list of its tile,
     // and drawn by their own: 4 pixels wide 114 and 17 ms, 8 wide 211 and 95, 25 wide 572 and 440.
-    p->splats_gather = !software;
+    p->draws_by_groups = !software;
     p->splats_direct = software ? 24 : 0;
     // Threads of a processor's group take turns at each barrier. Not timed by itself.
     p->sort_threads = software ? 32 : 256;

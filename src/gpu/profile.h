@@ -45,7 +45,7 @@ typedef struct gpu_profile {
     float bricks_dear;       // blocks along the longest side where densities are dear; 0: none
     float bricks_cheap;      // where they are cheap
     float bricks_many;       // ... but where samples are many
-    bool splats_gather;      // several threads draw a splat together, and a triangle of a piece
+    bool draws_by_groups;    // several threads draw a splat together, and a triangle of a piece
     float splats_direct;     // pixels to each side up to which a splat's own thread draws it
     bool previews;           // a live picture begins at less than its full size
     uint32_t lighting_parts; // that a ray to a light is cut into; 0: a quarter of its cells

@@ -1,6 +1,7 @@
 // What effects ask of the device's memory before they take any: as much as they take then, and
 // nothing at all where it is refused.
 #include "base/memory.h"
+#include "base/worker.h"
 #include "long_test.h"
 #include "roil/roil_impl.h"
 #include "roil_test.h"
@@ -9,9 +10,7 @@
 // stand, and how drivers round (a GPU's by up to 64 KiB for each of some twenty images: twice
 // this).
 enum { WIDTH = 640, HEIGHT = 360, SLACK = 1 << 20, LAST = 3 };
-// Of a shipped effect that plays files, frames besides that are read and copied ahead of their
-// time.
-enum { SHIPPED_WIDTH = 320, SHIPPED_HEIGHT = 180, AHEAD = 4 << 20 };
+enum { SHIPPED_WIDTH = 320, SHIPPED_HEIGHT = 180, FRAME = 1 << 20 };
 
 static const char crate[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
                             "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
@@ -206,13 +205,20 @@ static void what_turns_asks_for_all_turns(void **state) {
     expect_asked(*state, body, (const char *const[]){"masks of bodies", NULL});
 }
 
+// Of a shipped effect that plays files, frames besides that are read and copied ahead of their
+// time: two for each thread that decodes (field/sequence_jobs.c), and two.
+static uint64_t bytes_ahead(void) {
+    const uint32_t cores = worker_cores(), threads = cores > 2 ? cores - 2 : 1;
+    return (2 * (threads < 12 ? threads : 12) + 2) * (uint64_t)FRAME;
+}
+
 static void expect_shipped(roil *r, const char *name) {
     char path[512];
     budget_list list = {0};
     snprintf(path, sizeof path, "%s/effects/%s.lua", getenv("ROIL_SOURCE_DIR"), name);
     roil_effect *e = roil_load(r, path, NULL, 0);
     ok(e);
-    expect_taken(r, e, (extent){SHIPPED_WIDTH, SHIPPED_HEIGHT}, AHEAD, &list);
+    expect_taken(r, e, (extent){SHIPPED_WIDTH, SHIPPED_HEIGHT}, bytes_ahead(), &list);
     budget_list_free(&list);
     roil_unload(e);
 }

@@ -73,7 +73,7 @@ static bool pieces_declare(pass *p) {
 // ---- building ---------------------------------------------------------------------------------
 
 static uint32_t threads_of_triangle(const pass *p) {
-    return gpu_get_profile(p->host->device)->splats_gather ? 8 : 1;
+    return gpu_get_profile(p->host->device)->draws_by_groups ? 8 : 1;
 }
 
 static bool pieces_defines(pass *p, size_t index, pass_defines *out) {

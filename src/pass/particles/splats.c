@@ -122,7 +122,7 @@ static bool splats_defines(pass *p, size_t index, pass_defines *out) {
         return true;
     }
     const gpu_profile *device = gpu_get_profile(p->host->device);
-    pass_define_flag(out, "GATHERED", device->splats_gather);
+    pass_define_flag(out, "GATHERED", device->draws_by_groups);
     pass_define(out, "DIRECT",
                 arena_format(p->host->memory, "%.1f", (double)device->splats_direct));
     return true;
