@@ -39,9 +39,10 @@
 extern "C" {
 #endif
 
-typedef struct roil roil;               // a device and the folders of the library's files
-typedef struct roil_effect roil_effect; // one loaded effect file
-typedef struct roil_vulkan roil_vulkan; // a Vulkan device of the host (roil_vulkan.h)
+typedef struct roil roil;                 // a device and the folders of the library's files
+typedef struct roil_effect roil_effect;   // one loaded effect file
+typedef struct roil_vulkan roil_vulkan;   // a Vulkan device of the host (roil_vulkan.h)
+typedef struct roil_texture roil_texture; // 8-bit sRGB with alpha, on the device (roil_window.h)
 
 // Semantic: programs built with a version run with later ones of the same major, or while that is 0
 // of the same minor, number. roil_version is that of the library in use, such as "1.2.3"; static.
@@ -53,6 +54,7 @@ const char *roil_version(void);
 // Returns the message of the last error of the calling thread, or "" when there was none. It is
 // valid until the thread's next call of a roil function.
 const char *roil_error(void);
+void roil_free(void *text); // a text that a function gave for it; NULL is allowed
 
 typedef struct roil_place {
     char file[4096]; // as the message names it
@@ -564,140 +566,6 @@ bool roil_write_preset(roil_effect *e, const char *name);
 // Lists the names of an effect's presets, sorted. Any thread.
 size_t roil_presets(const char *effect_file, char (*names)[64], size_t capacity);
 
-// ---- live: an effect that is rebuilt when its files change -------------------------------------
-
-typedef struct roil_live roil_live;
-
-typedef struct roil_live_desc {
-    const char *file;
-    const char *const *presets; // as roil_read_preset takes them; read again when they change
-    size_t preset_count;
-    const roil_setting *settings; // win over presets
-    size_t setting_count;
-    // Called on another thread when roil_live_update has something to do. May be NULL.
-    void (*wake)(void *user);
-    void *user; // passed to wake
-} roil_live_desc;
-
-// Starts to watch the effect's files and to build it, on threads of its own, whenever one changes.
-// A file that is broken is watched until it is mended: NULL is returned only without a device, when
-// the file's folder cannot be watched, or when the file is a bundle and cannot be unpacked. What a
-// bundle was when it was opened goes on.
-roil_live *roil_live_create(roil *r, const roil_live_desc *desc);
-// Cancels a build that is running, waits for it a second and frees `l`. Returns false when the
-// build hangs: it keeps using the device and the memory, and roil_destroy then frees nothing. NULL
-// is allowed.
-bool roil_live_destroy(roil_live *l);
-// Call it between frames: swaps in the effect that was built last, prepared for this size and with
-// the histories of the old one. Returns true when the effect or the message has changed; handles of
-// the old effect are then invalid. A size of 0 (a minimised window) swaps nothing in. `frame` is
-// the frame that will be drawn next: an effect whose script fails at it is refused.
-bool roil_live_update(roil_live *l, uint32_t width, uint32_t height, double frame);
-void roil_live_wait(roil_live *l); // blocks until every change has been built
-// Returns the last effect that could be built, owned by `l`; valid until roil_live_update returns
-// true. NULL: none yet.
-roil_effect *roil_live_effect(roil_live *l);
-// Returns why the newest version could not be built, with the source line; NULL: it could. Valid
-// until roil_live_update returns true.
-const char *roil_live_message(roil_live *l);
-// Sets a control of this effect and of those that are built later, until the script's own value of
-// it changes. A structural control causes a build.
-bool roil_live_set(roil_live *l, const char *name, const char *value);
-bool roil_live_reset(roil_live *l, const char *name); // NULL: all controls
-// Returns what a control is set to, as roil_live_set takes it; NULL: it has the script's own value.
-// Free it with roil_free.
-char *roil_live_setting(roil_live *l, const char *name);
-typedef struct roil_live_count {
-    uint64_t reloads, failures; // builds that were swapped in, and that failed
-    double last; // seconds from the change of the file until its build was swapped in
-} roil_live_count;
-roil_live_count roil_live_counts(const roil_live *l);
-
-// ---- window -----------------------------------------------------------------------------------
-
-typedef struct roil_texture roil_texture; // 8-bit sRGB with alpha, on the device
-// `rgba` has width * height * 4 bytes, rows from the top. NULL: transparent.
-roil_texture *roil_texture_create(roil *r, uint32_t width, uint32_t height, const uint8_t *rgba);
-void roil_texture_destroy(roil *r, roil_texture *t); // NULL is allowed
-
-// A picture of an effect, kept to be shown again. It outlives the effect.
-typedef struct roil_still roil_still;
-// Keeps the picture of the last frame. Returns at once: the device makes it when it has drawn the
-// frame. NULL with a message: there is no picture, or no memory for another one.
-roil_still *roil_still_create(roil_effect *e);
-bool roil_still_ready(roil *r, roil_still *s); // it can be shown; never waits
-uint64_t roil_still_bytes(const roil_still *s);
-roil_still *roil_still_share(roil_still *s);     // the same one, to be destroyed once more
-void roil_still_destroy(roil *r, roil_still *s); // NULL is allowed
-// Reads a PNG picture and fits it into a size in pixels, 1 to 16384 each: it is made smaller and
-// cut to that aspect ratio. `rgba` must hold width * height * 4 bytes, rows from the top. Any
-// thread.
-bool roil_read_thumbnail(const char *png, uint32_t width, uint32_t height, uint8_t *rgba);
-
-typedef struct roil_vertex {
-    float x, y;     // pixels from the top left
-    float u, v;     // texture coordinates, 0 to 1
-    uint32_t color; // sRGB with straight alpha, red in the lowest byte; multiplies the texture
-} roil_vertex;
-typedef struct roil_draw {       // triangles with one texture
-    const roil_texture *texture; // NULL: white
-    uint32_t first, count;       // range of `indices`
-    float clip[4];               // left, top, right, bottom in pixels
-} roil_draw;
-typedef struct roil_picture { // the content of a window
-    uint32_t width, height;   // pixels
-    float background[3];      // sRGB, 0 to 1
-    roil_effect *effect;      // its last picture is shown; NULL: none
-    roil_still *still;        // is shown instead, nothing while it is not ready; NULL: `effect`
-    // With a still: another one, which is shown to the right of `split` (pixels). NULL: none is.
-    roil_still *beside;
-    float split;
-    float view[4]; // left, top, right, bottom (pixels) of the area for it; its aspect ratio is kept
-    const roil_vertex *vertices;
-    const uint32_t *indices;
-    const roil_draw *draws; // drawn in order over the effect
-    size_t vertex_count, index_count, draw_count;
-} roil_picture;
-// Draws the picture and presents it when there is a window, which waits for the display. A width or
-// height of 0 (a minimised window) shows nothing. Returns false when an index is out of range, and
-// when the device is lost.
-bool roil_show(roil *r, const roil_picture *picture);
-// Reads the picture shown last: `out` must hold its width * height * 4 bytes. Waits for the device.
-bool roil_read_shown(roil *r, uint8_t *out);
-
-// A view of an image of the graph. Volumes are shown in slices with z up, or y up when seen along
-// z. Pixels outside of the image are dark; infinities and NaN are magenta; a checkerboard shows
-// through alpha.
-typedef struct roil_inspection {
-    const char *image; // it must be kept (roil_keep), unless it shares its memory with no other
-    uint32_t mip;      // mip level, from 0
-    int axis;          // of a volume: the viewing direction, 0: x, 1: y, 2: z
-    float slice;       // of a volume: position along the axis, 0 to 1
-    float exposure;    // stops
-    unsigned channels; // bits: 1 red, 2 green, 4 blue, 8 alpha; a single channel is shown in grey
-    bool negative;     // show the sign of the largest channel: positive orange, negative blue
-    float center[2];   // centre of the view in the image or slice, 0 to 1 from the top left
-    float zoom;        // pixels of the target per pixel of the image, above 0
-    float cursor[2];   // pixel of the target whose value is read; negative: none
-} roil_inspection;
-typedef struct roil_texel {
-    bool valid;     // false: there is no value yet, or the cursor is outside of the image
-    uint32_t at[3]; // texel of the mip level
-    float value[4]; // as stored; missing channels are 0, and alpha 1
-} roil_texel;
-typedef struct roil_image_info {
-    char name[96];
-    const char *format;     // "rgba16f"; static
-    uint32_t size[3], mips; // size[2] 1: two-dimensional
-    bool volume, culled;    // culled: nothing reads it, so it is not computed
-} roil_image_info;
-// Lists the images of the graph, after roil_prepare; before it there are 0.
-size_t roil_images(roil_effect *e, roil_image_info *out, size_t capacity);
-// Draws the view into `target`. `texel` receives the value under the cursor, which is that of an
-// earlier call whose frame has finished, so that nothing waits.
-bool roil_inspect(roil_effect *e, const roil_inspection *how, roil_texture *target,
-                  roil_texel *texel);
-
 // ---- comparison -------------------------------------------------------------------------------
 
 typedef struct roil_comparison {
@@ -719,44 +587,6 @@ typedef struct roil_difference {
 // are. Needs no device. Any thread.
 bool roil_compare(const roil_comparison *how, roil_difference *out);
 
-// ---- reference --------------------------------------------------------------------------------
-// Texts for people, printed from the tables that the library itself uses. Each returns NULL with a
-// message on failure. Free them with roil_free.
-
-char *roil_info_devices(void);                     // any thread
-char *roil_info_passes(roil *r, const char *name); // NULL: one line for each
-char *roil_info_fields(const char *name);          // NULL: one line for each; any thread
-char *roil_info_params(roil_effect *e); // memory; parameters; uniforms and options of passes
-char *roil_info_graph(roil_effect *e);  // Graphviz dot; after roil_check or roil_prepare
-char *roil_info_vdb(const char *file);  // any thread
-char *roil_info_inputs(roil *r, const char *file); // whose effect it is, and what it reads
-char *roil_info_effects(roil *r); // those that lie in effects/ of the home, a line for each
-
-// The same for programs, as JSON:
-// {"roil": version, "words": [...], "passes": [...]}. A word has "name", "is" ("field": a function
-// that makes one; "value": a field; "object": any other function; "module": for require), "group",
-// "summary", "form", and lists of values: "arguments", "keys", "members". A pass has "name",
-// "constructor" (whether a word of that name makes it), "summary", "inputs", "fields", "options",
-// "uniforms", "outputs", "counters". A value has "name", "type" ("number", "whole", "bool", "word",
-// "color", "other"), "help", and what there is of "components", "default" (or "form": how it is
-// written), "min", "max", "unit", "words", "required".
-// `list`: "words" or "passes" alone, and of these the one called `name`; NULL: all.
-char *roil_info_json(roil *r, const char *list, const char *name);
-// {"devices": [{"index", "name", "uuid", "kind", "driver", "memory", "usable", "missing"}]}. Any
-// thread.
-char *roil_info_devices_json(void);
-// {"effect": {"name", "fps", "first_frame", "frames"}, "controls": [...]}: values, with "value" and
-// "initial" or "text", and the members of roil_control.
-char *roil_info_params_json(roil_effect *e);
-char *roil_info_inputs_json(roil *r, const char *file);
-// {"effects": [{"name", "file", "summary", "picture"}]}; "picture" is a PNG file, if there is one.
-char *roil_info_effects_json(roil *r);
-char *roil_info_effects_page(roil *r); // a page of HTML that needs no other file, with the pictures
-// Annotations for lua-language-server (LuaLS): every function, key, unit and word of an effect's
-// vocabulary, as a file of Lua that is never run.
-char *roil_info_lua_meta(roil *r);
-void roil_free(void *text); // NULL is allowed
-
 #ifdef __cplusplus
 }
 #endif
@@ -765,5 +595,8 @@ void roil_free(void *text); // NULL is allowed
 #include "roil_export.h" // volumes and sheets for other programs
 #include "roil_graph.h"  // passes and images, shown
 #include "roil_host.h"   // an effect in the picture of a host's renderer
+#include "roil_info.h"   // what there is to be asked for
+#include "roil_live.h"   // an effect that is rebuilt when its files change
 #include "roil_slices.h" // flows in slices, shown and changed
 #include "roil_space.h"  // where things are, and what moves them
+#include "roil_window.h" // the content of a window

@@ -156,7 +156,7 @@ class Farm(Case):
         self.assertEqual(followed.returncode, 0, said)
         self.assertIn("farm: 5 of 5 tasks done, 0 running; 64 pictures", said)
         self.assertEqual(self.pictures("parts"), self.pictures("whole"))
-        with open(self.path("parts/farm/frames-2.log"), encoding="utf-8") as log:
+        with open(self.path(os.path.join("parts", "farm", "frames-2.log")), encoding="utf-8") as log:
             text = log.read()
         self.assertIn("CANCELLED", text)
         self.assertIn("frames were there", text.split("CANCELLED")[1])

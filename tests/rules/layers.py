@@ -28,7 +28,8 @@ HOMES = [
 ]
 CPP = ["src/media/vdb.cpp", "src/media/vdb_blocks.cpp", "src/media/vdb_write.cpp",
        "src/media/optical/optical_flow.cpp", "src/ui/ui.cpp", "src/ui/ui_canvas.cpp", "src/ui/ui_widgets.cpp"]
-PUBLIC = ("roil.h", "roil_edits.h", "roil_export.h", "roil_graph.h", "roil_host.h", "roil_slices.h", "roil_space.h", "roil_vulkan.h")  # of the layer roil
+PUBLIC = ("roil.h", "roil_edits.h", "roil_export.h", "roil_graph.h", "roil_host.h", "roil_info.h", "roil_live.h",
+          "roil_slices.h", "roil_space.h", "roil_vulkan.h", "roil_window.h")  # of the layer roil
 INCLUDE = re.compile(r'^\s*#\s*(?:include|import)\b\s*(?:"([^"]*)"|<([^>]*)>|(.*))')
 
 
